@@ -1,0 +1,42 @@
+// How the sanitizers behave in every program of a sanitized build (TERRAY_SANITIZE), whoever starts it. Their run-time
+// libraries look for these functions by name; an environment variable such as ASAN_OPTIONS still overrides them.
+
+extern "C" {
+
+const char* __ubsan_default_options();
+const char* __tsan_default_options();
+const char* __tsan_default_suppressions();
+const char* __lsan_default_options();
+const char* __lsan_default_suppressions();
+
+const char* __ubsan_default_options() {
+    return "print_stacktrace=1";
+}
+
+const char* __tsan_default_options() {
+    return "halt_on_error=1:second_deadlock_stack=1";
+}
+
+// Mesa's software rasteriser synchronises its threads in code that was not instrumented.
+const char* __tsan_default_suppressions() {
+    return "called_from_lib:libEGL_mesa.so\n"
+           "called_from_lib:swrast_dri.so\n"
+           "called_from_lib:libLLVM";
+}
+
+const char* __lsan_default_options() {
+    return "print_suppressions=0";
+}
+
+// Memory that foreign libraries keep until the process ends.
+const char* __lsan_default_suppressions() {
+    return "leak:libEGL\n"
+           "leak:libGLdispatch\n"
+           "leak:libglapi\n"
+           "leak:swrast_dri\n"
+           "leak:libLLVM\n"
+           "leak:libgdal\n"
+           "leak:libproj";
+}
+
+}  // extern "C"
