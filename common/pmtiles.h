@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/bytes.h"
+#include "common/result.h"
+#include "common/tile_id.h"
+
+namespace terray {
+
+// PMTiles v3: one file with a 127-byte header, directories of varints, JSON metadata and tiles, ordered along a Hilbert
+// curve so that it can be read by ranges. Source: protomaps/PMTiles, spec/v3/spec.md.
+
+/// Position of a tile on the Hilbert curves of all levels, coarse levels first: 0/0/0 is 0, 1/0/0 is 1, 1/0/1 is 2,
+/// 1/1/1 is 3, 1/1/0 is 4. The id must be valid().
+[[nodiscard]] uint64_t hilbertId(const TileId& id);
+/// The inverse; fails for numbers beyond level kMaxTileLevel.
+[[nodiscard]] Result<TileId> tileFromHilbert(uint64_t hilbert);
+
+enum class PmtilesCompression : uint8_t { unknown = 0, none = 1, gzip = 2, brotli = 3, zstd = 4 };
+
+/// The fixed header, fields as in the specification. Offsets and lengths in bytes.
+struct PmtilesHeader {
+    uint64_t rootOffset = 0, rootLength = 0;
+    uint64_t metadataOffset = 0, metadataLength = 0;
+    uint64_t leavesOffset = 0, leavesLength = 0;
+    uint64_t tilesOffset = 0, tilesLength = 0;
+    uint64_t addressedTiles = 0, tileEntries = 0, tileContents = 0;
+    bool clustered = true;
+    PmtilesCompression internalCompression = PmtilesCompression::none;
+    PmtilesCompression tileCompression = PmtilesCompression::none;
+    uint8_t tileType = 0;  ///< 0: unknown, which is what ours are
+    uint8_t minZoom = 0, maxZoom = 0;
+    double minLon = 0, minLat = 0, maxLon = 0, maxLat = 0;  ///< degrees, stored in steps of 1e-7
+    uint8_t centerZoom = 0;
+    double centerLon = 0, centerLat = 0;
+
+    bool operator==(const PmtilesHeader&) const = default;
+};
+inline constexpr size_t kPmtilesHeaderBytes = 127;
+
+[[nodiscard]] Bytes encodePmtilesHeader(const PmtilesHeader& header);
+[[nodiscard]] Result<PmtilesHeader> decodePmtilesHeader(ByteView bytes);
+
+/// One line of a directory: a run of tiles that share their bytes, or (runLength 0) a leaf directory.
+struct PmtilesEntry {
+    uint64_t tileId = 0;
+    uint64_t offset = 0;  ///< from the start of the tile data, or of the leaf directories
+    uint32_t length = 0;
+    uint32_t runLength = 0;
+
+    bool operator==(const PmtilesEntry&) const = default;
+};
+[[nodiscard]] Bytes encodePmtilesDirectory(const std::vector<PmtilesEntry>& entries);
+/// Ids must ascend, lengths must not be 0, runs must not overlap; allocates no more than the bytes can hold.
+[[nodiscard]] Result<std::vector<PmtilesEntry>> decodePmtilesDirectory(ByteView bytes);
+
+/// Random access to the bytes of an archive: a file, or a web server. Calls may come from several threads at once.
+class ByteSource {
+  public:
+    virtual ~ByteSource() = default;
+    /// Exactly `length` bytes from `offset`; fails when they are not all there.
+    virtual Result<Bytes> read(uint64_t offset, uint64_t length) const = 0;
+    /// Bytes in all.
+    virtual uint64_t size() const = 0;
+    /// For messages: a path or an address.
+    virtual std::string name() const = 0;
+};
+/// A local file read by pread. Fails when it cannot be opened.
+[[nodiscard]] Result<std::unique_ptr<ByteSource>> openFileSource(const std::filesystem::path& path);
+
+/// Reads an archive. Thread-safe after open(); leaf directories are cached (bounded).
+class PmtilesReader {
+  public:
+    /// Checks the header and the root directory against the source's size: a truncated archive fails here.
+    [[nodiscard]] static Result<PmtilesReader> open(std::unique_ptr<ByteSource> source);
+    PmtilesReader(PmtilesReader&&) noexcept;
+    PmtilesReader& operator=(PmtilesReader&&) noexcept;
+    ~PmtilesReader();
+
+    [[nodiscard]] const PmtilesHeader& header() const;
+    /// The JSON metadata, decompressed.
+    [[nodiscard]] Result<std::string> metadata() const;
+    /// The stored bytes of a tile; no value inside the optional when the archive has no such tile.
+    [[nodiscard]] Result<std::optional<Bytes>> read(const TileId& id) const;
+    /// Calls visit(tile, offset in the file, length) for every tile in Hilbert order, run by run expanded; stops at the
+    /// first failure. Offsets are checked against the archive's tile section.
+    [[nodiscard]] Result<void> forEach(const std::function<void(const TileId&, uint64_t, uint32_t)>& visit) const;
+    [[nodiscard]] const ByteSource& source() const;
+
+  private:
+    struct State;
+    explicit PmtilesReader(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// Writes a clustered archive front to back. Tile data goes to a temporary file beside the target, because the
+/// directories that precede it are known only at the end; finish() puts the parts together, syncs, and renames. Without
+/// finish() nothing is left behind. Same tiles, same bytes. One thread.
+///
+/// Throws Error(output) when the disk is full or not writable.
+class PmtilesWriter {
+  public:
+    struct Options {
+        PmtilesCompression internalCompression = PmtilesCompression::none;  ///< none or gzip (needs zlib)
+        size_t maxRootBytes = 16384 - kPmtilesHeaderBytes;                  ///< the specification's bound
+    };
+    explicit PmtilesWriter(std::filesystem::path path);
+    PmtilesWriter(std::filesystem::path path, Options options);
+    ~PmtilesWriter();
+    PmtilesWriter(const PmtilesWriter&) = delete;
+    PmtilesWriter& operator=(const PmtilesWriter&) = delete;
+
+    /// Adds a tile; ids must ascend in Hilbert order. Equal contents of neighbours in the order share their bytes.
+    void add(const TileId& id, ByteView payload);
+    /// @param metadata  JSON text
+    /// @param header    zoom range, bounds and centre are taken from it; everything else is filled in
+    void finish(const std::string& metadata, const PmtilesHeader& header);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace terray

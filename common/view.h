@@ -1,0 +1,33 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace terray {
+
+/// What a picture is taken with, in world coordinates: what selection, renderer and truth agree on.
+///
+/// World: x east, y north, z up, metres of the dataset's coordinate system. The ray through the centre of pixel (i, j),
+/// j counted from the top, is P(t) = eye + t * direction with
+///     direction = forward + (2 (i + 0.5) / width - 1) tanHalfWidth right + (1 - 2 (j + 0.5) / height) tanHalfHeight
+///     up,
+/// not normalised: t is then the distance along the view axis (view depth) in metres.
+struct View {
+    glm::dvec3 eye{0};
+    glm::dvec3 right{1, 0, 0};  ///< right, up, forward: orthonormal, right-handed (right x up = -forward)
+    glm::dvec3 up{0, 0, 1};
+    glm::dvec3 forward{0, 1, 0};
+    double tanHalfHeight = 0.5;  ///< tangent of half the vertical field of view
+    int width = 1;               ///< pixels
+    int height = 1;              ///< pixels
+
+    [[nodiscard]] double tanHalfWidth() const { return tanHalfHeight * width / height; }
+    /// Pixels per unit of slope on the image axis: an object of size s at view depth d covers s / d * focalPixels().
+    [[nodiscard]] double focalPixels() const { return height / (2 * tanHalfHeight); }
+    /// Direction of the ray through a point of the picture, in pixels from the upper-left corner (centres at +0.5).
+    [[nodiscard]] glm::dvec3 direction(double pixelX, double pixelY) const {
+        return forward + (2 * pixelX / width - 1) * tanHalfWidth() * right +
+               (1 - 2 * pixelY / height) * tanHalfHeight * up;
+    }
+};
+
+}  // namespace terray
