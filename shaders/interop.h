@@ -1,0 +1,56 @@
+// Data that C++ writes and shaders read: one file, compiled by both. Every struct is std430/std140-clean: vec4 and uvec4 only.
+#ifndef TERRAY_INTEROP_H
+#define TERRAY_INTEROP_H
+
+#ifdef __cplusplus
+#include <glm/vec4.hpp>
+#include <cstdint>
+namespace terray::interop {
+using vec4 = glm::vec4;
+using uvec4 = glm::uvec4;
+#endif
+
+// Bindings. Textures: GL texture units. Buffers: indexed binding points.
+#define TERRAY_UNIT_HEIGHTS 0  // usampler2DArray: codes and maximum mipmap, see GpuTiles
+#define TERRAY_UNIT_PHOTO 1    // sampler2DArray: BC1 sRGB
+#define TERRAY_UNIT_ID 2       // usampler2D: node last found in front, by the ID pass
+#define TERRAY_UNIT_HIT 3      // sampler2D: hit in the tile frame, view depth
+#define TERRAY_UNIT_NODE 4     // usampler2D: node index + 1
+#define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
+#define TERRAY_BUFFER_NODES 0  // SSBO: NodeParameters[]
+#define TERRAY_BUFFER_FRAME 1  // UBO: FrameParameters
+#define TERRAY_UNIFORM_NODE 0  // location of the node index
+
+// A slot that is none: NodeParameters::source.y of a node without photo.
+#define TERRAY_NO_SLOT 0xffffffffu
+
+// One draw node. "Tile frame": of the node's height source tile, x east and y south in its texels (0..512 over the core),
+// z in its height codes, so that a column's top is exactly its code.
+struct NodeParameters {
+    vec4 eye;      // xyz: the eye in the tile frame; w: metres per texel
+    vec4 right;    // xyz: half the picture's width at view depth 1 m, in the tile frame; w: metres per code
+    vec4 up;       // xyz: half the picture's height at view depth 1 m, in the tile frame; w: raster margin, metres
+    vec4 forward;  // xyz: the view axis, 1 m, in the tile frame
+    vec4 boxMin;   // xyz: the cell's box in the tile frame
+    vec4 boxMax;
+    vec4 photo;    // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
+    uvec4 source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: pyramid level to start at
+};
+
+// One frame.
+struct FrameParameters {
+    vec4 right;     // xyz: half the picture's width at view depth 1 m, world (metres, east north up); w: width in pixels
+    vec4 up;        // xyz: half the picture's height, likewise; w: height in pixels
+    vec4 forward;   // xyz: the view axis, unit; w: view depth that depth value 1 stands for, metres
+    vec4 sun;       // xyz: towards the sun, unit, world
+    vec4 viewScale; // x: 1 / length of right, y: 1 / length of up, squared
+    vec4 ground;    // rgb: linear colour of ground without photo
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(NodeParameters) == 8 * 16);
+static_assert(sizeof(FrameParameters) == 6 * 16);
+}  // namespace terray::interop
+#endif
+
+#endif
