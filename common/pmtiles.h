@@ -110,6 +110,7 @@ class PmtilesWriter {
     struct Options {
         PmtilesCompression internalCompression = PmtilesCompression::none;  ///< none or gzip (needs zlib)
         size_t maxRootBytes = 16384 - kPmtilesHeaderBytes;                  ///< the specification's bound
+        size_t leafEntries = 4096;  ///< of a leaf directory, doubled until the root that points to the leaves fits
     };
     explicit PmtilesWriter(std::filesystem::path path);
     PmtilesWriter(std::filesystem::path path, Options options);

@@ -1,0 +1,223 @@
+// The reading half of pmtiles.h.
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <unordered_map>
+
+#include "common/check.h"
+#include "common/pmtiles.h"
+#include "common/pmtiles_gzip.h"
+
+namespace terray {
+namespace {
+
+using Directory = std::vector<PmtilesEntry>;
+
+constexpr int kMaxLeafLevels = 3;                       // below the root, as the reference readers allow
+constexpr size_t kMaxUnpackedBytes = size_t{64} << 20;  // of a gzip directory or metadata
+constexpr size_t kMaxCachedEntries = size_t{1} << 20;   // 24 MiB
+
+/// The entry whose run holds the tile or whose leaf may, else nullptr.
+const PmtilesEntry* findEntry(const Directory& directory, uint64_t tile) {
+    const auto after = std::upper_bound(directory.begin(), directory.end(), tile,
+                                        [](uint64_t id, const PmtilesEntry& entry) { return id < entry.tileId; });
+    if (after == directory.begin()) return nullptr;
+    const PmtilesEntry& entry = *(after - 1);
+    return entry.runLength == 0 || tile - entry.tileId < entry.runLength ? &entry : nullptr;
+}
+
+/// Leaf directories by their offset; drops what was used longest ago when the entries in all exceed a bound.
+class LeafCache {
+  public:
+    std::shared_ptr<const Directory> find(uint64_t offset) {
+        const std::lock_guard lock(mutex_);
+        const auto found = leaves_.find(offset);
+        if (found == leaves_.end()) return nullptr;
+        found->second.lastUse = ++uses_;
+        return found->second.directory;
+    }
+    void insert(uint64_t offset, std::shared_ptr<const Directory> directory) {
+        const std::lock_guard lock(mutex_);
+        const size_t size = directory->size();
+        if (!leaves_.try_emplace(offset, Leaf{std::move(directory), ++uses_}).second) return;
+        entries_ += size;
+        while (entries_ > kMaxCachedEntries && leaves_.size() > 1) {
+            const auto oldest = std::min_element(leaves_.begin(), leaves_.end(), [](const auto& a, const auto& b) {
+                return a.second.lastUse < b.second.lastUse;
+            });
+            entries_ -= oldest->second.directory->size();
+            leaves_.erase(oldest);
+        }
+    }
+
+  private:
+    struct Leaf {
+        std::shared_ptr<const Directory> directory;
+        uint64_t lastUse = 0;
+    };
+    std::mutex mutex_;
+    std::unordered_map<uint64_t, Leaf> leaves_;
+    uint64_t uses_ = 0;
+    size_t entries_ = 0;
+};
+
+}  // namespace
+
+struct PmtilesReader::State {
+    std::unique_ptr<ByteSource> source;
+    PmtilesHeader header;
+    Directory root;
+    mutable LeafCache leaves;
+
+    using Visit = std::function<void(const TileId&, uint64_t, uint32_t)>;
+    /// How far forEach() has come: the ids that may follow, and the tiles visited.
+    struct Progress {
+        uint64_t nextId = 0;
+        uint64_t visited = 0;
+    };
+
+    [[nodiscard]] Failure damaged(const std::string& what) const { return {source->name() + ": " + what}; }
+
+    [[nodiscard]] Result<void> checkSections() const {
+        const struct {
+            const char* name;
+            uint64_t offset, length;
+        } sections[] = {{"root directory", header.rootOffset, header.rootLength},
+                        {"metadata", header.metadataOffset, header.metadataLength},
+                        {"leaf directories", header.leavesOffset, header.leavesLength},
+                        {"tiles", header.tilesOffset, header.tilesLength}};
+        for (const auto& section : sections)
+            if (section.offset > source->size() || section.length > source->size() - section.offset)
+                return damaged("cut short: its " + std::string(section.name) + " should end at byte " +
+                               std::to_string(section.offset + section.length) + ", the file has " +
+                               std::to_string(source->size()));
+        return {};
+    }
+
+    /// Bytes of a directory or the metadata, unpacked.
+    [[nodiscard]] Result<Bytes> readInternal(uint64_t offset, uint64_t length) const {
+        auto bytes = source->read(offset, length);
+        if (!bytes.ok() || header.internalCompression == PmtilesCompression::none) return bytes;
+        if (header.internalCompression != PmtilesCompression::gzip)
+            return damaged(
+                "its directories are compressed by a method that this build does not read (only gzip or none)");
+        auto unpacked = gzipDecompress(*bytes, kMaxUnpackedBytes);
+        return unpacked.ok() ? std::move(unpacked) : damaged(unpacked.failure().message);
+    }
+
+    [[nodiscard]] Result<Directory> readDirectory(uint64_t offset, uint64_t length) const {
+        const auto bytes = readInternal(offset, length);
+        if (!bytes.ok()) return bytes.failure();
+        auto directory = decodePmtilesDirectory(*bytes);
+        return directory.ok() ? std::move(directory) : damaged(directory.failure().message);
+    }
+
+    [[nodiscard]] Result<std::shared_ptr<const Directory>> readLeaf(const PmtilesEntry& entry) const {
+        if (entry.offset > header.leavesLength || entry.length > header.leavesLength - entry.offset)
+            return damaged("a leaf directory lies outside its section");
+        if (auto cached = leaves.find(entry.offset)) return cached;
+        auto directory = readDirectory(header.leavesOffset + entry.offset, entry.length);
+        if (!directory.ok()) return directory.failure();
+        auto shared = std::make_shared<const Directory>(*std::move(directory));
+        leaves.insert(entry.offset, shared);
+        return shared;
+    }
+
+    [[nodiscard]] Result<void> checkTile(const PmtilesEntry& entry) const {
+        if (entry.offset > header.tilesLength || entry.length > header.tilesLength - entry.offset)
+            return damaged("tile " + std::to_string(entry.tileId) + " lies outside the section of tiles");
+        return {};
+    }
+
+    Result<void> visitDirectory(const Directory& directory, int leafLevel, Progress& progress,
+                                const Visit& visit) const {
+        for (const PmtilesEntry& entry : directory) {
+            if (entry.tileId < progress.nextId) return damaged("tile ids do not ascend");
+            if (entry.runLength > 0) {
+                if (auto result = visitRun(entry, progress, visit); !result.ok()) return result;
+                continue;
+            }
+            if (leafLevel == kMaxLeafLevels) return damaged("leaf directories are nested too deeply");
+            progress.nextId = entry.tileId;
+            const auto leaf = readLeaf(entry);
+            if (!leaf.ok()) return leaf.failure();
+            if (auto result = visitDirectory(**leaf, leafLevel + 1, progress, visit); !result.ok()) return result;
+        }
+        return {};
+    }
+
+    Result<void> visitRun(const PmtilesEntry& entry, Progress& progress, const Visit& visit) const {
+        if (auto result = checkTile(entry); !result.ok()) return result;
+        progress.visited += entry.runLength;
+        if (header.addressedTiles != 0 && progress.visited > header.addressedTiles)
+            return damaged("its directories name more tiles than its header");
+        for (uint64_t i = 0; i < entry.runLength; ++i) {
+            const auto tile = tileFromHilbert(entry.tileId + i);
+            if (!tile.ok()) return damaged(tile.failure().message);
+            visit(*tile, header.tilesOffset + entry.offset, entry.length);
+        }
+        progress.nextId = entry.tileId + entry.runLength;
+        return {};
+    }
+};
+
+PmtilesReader::PmtilesReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PmtilesReader::PmtilesReader(PmtilesReader&&) noexcept = default;
+PmtilesReader& PmtilesReader::operator=(PmtilesReader&&) noexcept = default;
+PmtilesReader::~PmtilesReader() = default;
+
+Result<PmtilesReader> PmtilesReader::open(std::unique_ptr<ByteSource> source) {
+    TERRAY_CHECK(source != nullptr);
+    auto state = std::make_unique<State>();
+    state->source = std::move(source);
+    if (state->source->size() < kPmtilesHeaderBytes)
+        return state->damaged("too short for a PMTiles archive, " + std::to_string(state->source->size()) + " bytes");
+    const auto bytes = state->source->read(0, kPmtilesHeaderBytes);
+    if (!bytes.ok()) return bytes.failure();
+    const auto header = decodePmtilesHeader(*bytes);
+    if (!header.ok()) return state->damaged(header.failure().message);
+    state->header = *header;
+    if (auto result = state->checkSections(); !result.ok()) return result.failure();
+    auto root = state->readDirectory(header->rootOffset, header->rootLength);
+    if (!root.ok()) return root.failure();
+    state->root = *std::move(root);
+    return PmtilesReader(std::move(state));
+}
+
+const PmtilesHeader& PmtilesReader::header() const {
+    return state_->header;
+}
+const ByteSource& PmtilesReader::source() const {
+    return *state_->source;
+}
+
+Result<std::string> PmtilesReader::metadata() const {
+    const auto bytes = state_->readInternal(state_->header.metadataOffset, state_->header.metadataLength);
+    if (!bytes.ok()) return bytes.failure();
+    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+Result<std::optional<Bytes>> PmtilesReader::read(const TileId& id) const {
+    const uint64_t tile = hilbertId(id);
+    std::shared_ptr<const Directory> leaf;
+    const PmtilesEntry* entry = findEntry(state_->root, tile);
+    for (int leafLevel = 0; entry != nullptr && entry->runLength == 0; ++leafLevel) {
+        if (leafLevel == kMaxLeafLevels) return state_->damaged("leaf directories are nested too deeply");
+        auto next = state_->readLeaf(*entry);
+        if (!next.ok()) return next.failure();
+        leaf = *std::move(next);
+        entry = findEntry(*leaf, tile);
+    }
+    if (entry == nullptr) return std::optional<Bytes>();
+    if (auto result = state_->checkTile(*entry); !result.ok()) return result.failure();
+    auto bytes = state_->source->read(state_->header.tilesOffset + entry->offset, entry->length);
+    if (!bytes.ok()) return bytes.failure();
+    return std::optional<Bytes>(*std::move(bytes));
+}
+
+Result<void> PmtilesReader::forEach(const State::Visit& visit) const {
+    State::Progress progress;
+    return state_->visitDirectory(state_->root, 0, progress, visit);
+}
+
+}  // namespace terray
