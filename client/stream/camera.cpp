@@ -1,0 +1,164 @@
+#include "client/stream/camera.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "common/check.h"
+
+namespace terray {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// The same direction in [0, 2 pi).
+Radians normalised(Radians heading) {
+    const double turned = std::fmod(heading.value(), kTurn);
+    return Radians(turned < 0 ? turned + kTurn : turned);
+}
+
+/// One number of a camera's text: what it is called and what it may be.
+struct Field {
+    const char* name;
+    double min;
+    double max;
+    const char* range;  ///< the same for people
+};
+
+// Heights and plane coordinates are bounded only against slips of the pen; 1e8 m is beyond any map of the earth.
+constexpr Field kLongitude{"longitude", -180, 180, "-180 to 180 degrees"};
+constexpr Field kLatitude{"latitude", -90, 90, "-90 to 90 degrees"};
+constexpr Field kX{"x", -1e8, 1e8, "-1e8 to 1e8 metres"};
+constexpr Field kY{"y", -1e8, 1e8, "-1e8 to 1e8 metres"};
+constexpr Field kHeight{"height", -1e8, 1e8, "-1e8 to 1e8 metres"};
+constexpr Field kHeading{"heading", -360, 360, "-360 to 360 degrees"};
+constexpr Field kPitch{"pitch", -90, 90, "-90 to 90 degrees"};
+constexpr Field kFov{"field of view", 0.001, 179, "0.001 to 179 degrees"};
+
+std::vector<std::string_view> splitAtCommas(std::string_view text) {
+    std::vector<std::string_view> parts;
+    for (size_t start = 0;;) {
+        const size_t comma = text.find(',', start);
+        parts.push_back(text.substr(start, comma - start));
+        if (comma == std::string_view::npos) return parts;
+        start = comma + 1;
+    }
+}
+
+std::string_view withoutBlanks(std::string_view text) {
+    const size_t first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+Result<double> parseField(std::string_view text, const Field& field) {
+    const std::string_view digits = withoutBlanks(text);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+        return Failure{std::string("camera: ") + field.name + " is \"" + std::string(text) + "\", expected a number"};
+    if (value < field.min || value > field.max)
+        return Failure{std::string("camera: ") + field.name + " is " + std::string(digits) + ", expected " +
+                       field.range};
+    return value;
+}
+
+/// Where a place of the text lies in the plane, and how far true north is turned from the y axis there.
+struct Plane {
+    glm::dvec2 position{0};
+    Radians north;
+};
+
+Result<Plane> planeOf(LonLat place, const Projection& projection) {
+    const auto position = projection.plane(place);
+    if (!position) return position.failure();
+    const auto north = projection.gridHeadingOfNorth(*position);
+    if (!north) return north.failure();
+    return Plane{*position, *north};
+}
+
+void append(std::string& text, double value, int decimals) {
+    std::array<char, 400> digits{};  // the longest fixed double has 309 digits before the point
+    const auto [end, error] =
+        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
+    TERRAY_CHECK(error == std::errc());
+    if (!text.empty()) text += ',';
+    text.append(digits.data(), end);
+}
+
+}  // namespace
+
+View viewOf(const Camera& camera, int width, int height) {
+    TERRAY_CHECK_OP(width, >, 0);
+    TERRAY_CHECK_OP(height, >, 0);
+    const double sinHeading = std::sin(camera.heading.value()), cosHeading = std::cos(camera.heading.value());
+    const double sinPitch = std::sin(camera.pitch.value()), cosPitch = std::cos(camera.pitch.value());
+    const glm::dvec3 ahead(sinHeading, cosHeading, 0), zenith(0, 0, 1);
+    return {
+        .eye = camera.position,
+        .right = {cosHeading, -sinHeading, 0},
+        .up = cosPitch * zenith - sinPitch * ahead,
+        .forward = cosPitch * ahead + sinPitch * zenith,
+        .tanHalfHeight = std::tan(camera.verticalFov.value() / 2),
+        .width = width,
+        .height = height,
+    };
+}
+
+Result<Camera> parseCamera(const std::string& text, const Projection* projection) {
+    const auto parts = splitAtCommas(text);
+    if (parts.size() != 5 && parts.size() != 6)
+        return Failure{"camera: found " + std::to_string(parts.size()) + " numbers in \"" + text + "\", expected " +
+                       (projection ? "lon,lat,height_m,heading_deg,pitch_deg[,fov_deg]"
+                                   : "x_m,y_m,height_m,heading_deg,pitch_deg[,fov_deg]")};
+    const std::array<Field, 6> fields{
+        projection ? kLongitude : kX, projection ? kLatitude : kY, kHeight, kHeading, kPitch, kFov};
+    std::array<double, 6> values{0, 0, 0, 0, 0, degreesFromRadians(Camera().verticalFov)};
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const auto value = parseField(parts[i], fields[i]);
+        if (!value) return value.failure();
+        values[i] = *value;
+    }
+    Plane plane{{values[0], values[1]}, Radians(0)};
+    if (projection) {
+        const auto found = planeOf({values[0], values[1]}, *projection);
+        if (!found) return Failure{"camera: cannot place \"" + text + "\": " + found.failure().message};
+        plane = *found;
+    }
+    return Camera{
+        .position = {plane.position.x, plane.position.y, values[2]},
+        .heading = normalised(radiansFromDegrees(values[3]) + plane.north),
+        .pitch = radiansFromDegrees(values[4]),
+        .verticalFov = radiansFromDegrees(values[5]),
+    };
+}
+
+Result<std::string> formatCamera(const Camera& camera, const Projection* projection) {
+    // 1e-9 degrees are 0.1 mm on the ground.
+    std::string text;
+    Radians north;
+    if (projection) {
+        const glm::dvec2 position(camera.position);
+        const auto place = projection->lonLat(position);
+        if (!place) return Failure{"camera: cannot tell longitude and latitude: " + place.failure().message};
+        const auto turned = projection->gridHeadingOfNorth(position);
+        if (!turned) return Failure{"camera: cannot tell where north is: " + turned.failure().message};
+        north = *turned;
+        append(text, place->longitude, 9);
+        append(text, place->latitude, 9);
+    } else {
+        append(text, camera.position.x, 4);
+        append(text, camera.position.y, 4);
+    }
+    append(text, camera.position.z, 4);
+    append(text, degreesFromRadians(normalised(camera.heading - north)), 8);
+    append(text, degreesFromRadians(camera.pitch), 8);
+    append(text, degreesFromRadians(camera.verticalFov), 8);
+    return text;
+}
+
+}  // namespace terray

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "client/stream/camera.h"
+#include "client/stream/dataset_source.h"
+#include "common/json.h"
+
+namespace terray {
+
+/// A camera at a time.
+struct FlightKey {
+    double seconds = 0;  ///< from the flight's start, ascending
+    Camera camera;
+    bool operator==(const FlightKey&) const = default;
+};
+
+/// A recorded or planned path of the camera. Between keys position and angles follow a monotone-time Catmull-Rom spline
+/// (centripetal is not needed: times are given), headings the shorter way round; before the first and after the last
+/// key the camera rests. Exact at the keys.
+struct Flight {
+    std::string dataset;  ///< name of the dataset it was made for, for people
+    std::string name;
+    std::vector<FlightKey> keys;
+    bool operator==(const Flight&) const = default;
+
+    [[nodiscard]] double seconds() const { return keys.empty() ? 0 : keys.back().seconds; }
+    [[nodiscard]] Camera at(double seconds) const;
+};
+
+/// JSON as documented in client/README.md: positions in dataset coordinates, longitude, latitude and degrees beside
+/// them when a projection is given (they are for people; reading takes the dataset coordinates).
+[[nodiscard]] Json toJson(const Flight& flight, const Projection* projection);
+[[nodiscard]] Result<Flight> flightFromJson(const Json& json);
+/// Throws Error(input) when the file is missing or no flight, Error(output) when it cannot be written.
+[[nodiscard]] Flight loadFlight(const std::filesystem::path& path);
+void saveFlight(const Flight& flight, const std::filesystem::path& path, const Projection* projection);
+
+/// A standard flight derived from a dataset's extent and heights, so that runs on one dataset compare: an overview from
+/// outside, a descent, a low pass over rough ground looking ahead, a turn, a climb, a look straight down, a sweep of
+/// the horizon. The camera stays above the ground it flies over by a clearance taken from the data.
+[[nodiscard]] Flight standardTour(const TileSource& source, double seconds);
+
+}  // namespace terray

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/stream/dataset_source.h"
+#include "client/stream/selection.h"
+
+namespace terray {
+
+struct PagerOptions {
+    uint64_t hostBudgetBytes = 1ull << 30;  ///< for decoded tiles held in main memory
+    int decodeThreads = 0;                  ///< 0: one less than the cores, at least 1
+    int maxRequestsInFlight = 16;
+};
+
+/// A tile that has arrived, decoded and checked. Shared so that an eviction cannot pull it away from an upload.
+struct LoadedTile {
+    TileLayer layer = TileLayer::heights;
+    TileId id;
+    std::shared_ptr<const HeightTile> heights;   ///< for TileLayer::heights
+    std::shared_ptr<const Bytes> imageryChain;   ///< for TileLayer::imagery: gatherMipChain of the tile
+    std::shared_ptr<const ImageryTile> imagery;  ///< for TileLayer::imagery
+};
+
+/// A tile that could not be had: every request ends as a LoadedTile or as one of these, exactly once.
+struct FailedTile {
+    TileLayer layer = TileLayer::heights;
+    TileId id;
+    std::string message;
+};
+
+struct PagerStatistics {
+    uint64_t requested = 0;  ///< handed to the IO thread
+    uint64_t delivered = 0;
+    uint64_t failed = 0;
+    uint64_t cancelled = 0;  ///< dropped from the queue because no longer wanted
+    uint64_t hostHits = 0;   ///< answered from main memory
+    uint64_t bytesRead = 0;  ///< stored bytes read from the source
+    uint64_t hostBytes = 0;  ///< held now
+    uint64_t evicted = 0;
+};
+
+/// Brings wanted tiles from a source to main memory without ever blocking the render thread: one IO thread reads in
+/// order of priority, workers decode. All functions are for the render thread.
+///
+/// The queue is replaced by each want(): what is no longer wanted and not yet begun is cancelled, duplicates join.
+/// Imagery brings its ancestors along, since its mip chain is gathered from them. Main memory is an LRU cache under
+/// hostBudgetBytes; a tile whose descendants are held is kept as long as they are, and tiles in flight are counted
+/// before they arrive. A budget too small for what is in flight delays requests, it is never exceeded by more than one
+/// tile. A tile that failed is not asked for again in this session; its ancestor goes on standing in.
+class Pager {
+  public:
+    Pager(const TileSource& source, const PagerOptions& options);
+    ~Pager();  ///< joins its threads; requests in flight are dropped
+    Pager(const Pager&) = delete;
+    Pager& operator=(const Pager&) = delete;
+
+    /// States everything that is wanted now, most urgent first; replaces what was wanted before.
+    void want(const std::vector<TileRequest>& wanted);
+    /// What has arrived since the last call, in order of arrival, at most maxTiles of it.
+    [[nodiscard]] std::vector<LoadedTile> takeLoaded(size_t maxTiles);
+    [[nodiscard]] std::vector<FailedTile> takeFailed();
+    /// Blocks until nothing wanted is queued, being read or being decoded (all wanted have been settled).
+    void waitUntilSettled();
+    [[nodiscard]] PagerStatistics statistics() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace terray

@@ -1,0 +1,238 @@
+#include "client/stream/selection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "client/stream/selection_geometry.h"
+#include "common/check.h"
+
+namespace terray {
+namespace {
+
+/// How many levels a stand-in may lie above its cell: a sample of it (its tile's side / 512) then still lies inside the
+/// cell, so that the cell's own record bounds it. Deeper, the tile between is loaded first.
+constexpr uint32_t kMaxStandInLevels = 9;
+
+/// What one layer (heights or photo) shows in a cell.
+struct Choice {
+    std::optional<TileId> drawn;  ///< the deepest resident tile that covers the cell, down to what is wanted
+    bool settled = false;         ///< nothing finer is wanted beneath this cell
+    bool exact = false;           ///< once settled: drawn is what is wanted
+};
+
+struct Cell {
+    TileId id;
+    Neighbourhood ground;
+    Choice heights;
+    Choice imagery;
+};
+
+/// The finest that a subtree has put on the draw list, as levels + 1; 0: nothing.
+struct Shown {
+    uint32_t heights = 0;
+    uint32_t imagery = 0;
+};
+/// Shown::imagery where there is known to be no photo: nothing can be finer.
+constexpr uint32_t kNoPhoto = std::numeric_limits<uint32_t>::max();
+
+/// One traversal of the tree with tolerances multiplied by `coarsening`.
+class Traversal {
+  public:
+    Traversal(const TileTree& tree, const View& view, const SelectionOptions& options, double coarsening)
+        : tree_(tree),
+          view_(view),
+          options_(options),
+          coarsening_(coarsening),
+          frustum_(view),
+          bounds_(tree),
+          useImagery_(options.useImagery && tree.hasImagery()) {}
+
+    Selection run();
+    /// Whether the traversal was given up because the list had grown far beyond maxNodes.
+    [[nodiscard]] bool overflowed() const { return overflowed_; }
+
+  private:
+    Shown visit(Cell cell);
+    Shown visitChildren(const Cell& cell);
+    Shown emit(const Cell& cell, Metres distance);
+    void chooseHeights(Cell& cell, Metres distance);
+    void chooseImagery(Cell& cell, Metres distance);
+    std::optional<Cell> childOf(const Cell& cell, uint32_t quadrant) const;
+    [[nodiscard]] Pixels texelSide(uint32_t level, Metres distance) const {
+        return screenError(Metres(tree_.tiling().spacing(level)), distance, view_);
+    }
+
+    const TileTree& tree_;
+    const View& view_;
+    const SelectionOptions& options_;
+    double coarsening_;
+    Frustum frustum_;
+    GroundBounds bounds_;
+    bool useImagery_;
+    bool overflowed_ = false;
+    Selection result_;
+};
+
+/// Quadrants of a cell in the order in which rays from the eye meet them. The two lines through the cell's centre part
+/// them, and a ray crosses each at most once, away from the eye: the eye's quadrant is first, the opposite one last,
+/// and no ray meets both of the others.
+std::array<uint32_t, 4> frontToBack(const TileId& cell, const glm::dvec3& eye, const Tiling& tiling) {
+    const GroundRect last = tiling.bounds(cell.child(3));
+    const uint32_t east = eye.x >= last.west ? 1 : 0;
+    const uint32_t south = eye.y < last.north ? 2 : 0;
+    const uint32_t nearest = east | south;
+    return {nearest, nearest ^ 1, nearest ^ 2, nearest ^ 3};
+}
+
+bool moreUrgent(const TileRequest& a, const TileRequest& b) {
+    if (a.priority != b.priority) return a.priority > b.priority;
+    return std::tuple(a.layer, a.id) < std::tuple(b.layer, b.id);
+}
+
+Selection Traversal::run() {
+    const TileId root;
+    const auto* heights = tree_.heights(root);
+    TERRAY_CHECK(heights != nullptr && heights->resident);
+    const Neighbourhood ground = bounds_.ofRoot();
+    if (!ground[4].surface) return {};
+    visit({.id = root,
+           .ground = ground,
+           .heights = {.drawn = root},
+           .imagery = {.settled = !useImagery_, .exact = !useImagery_}});
+    std::sort(result_.wanted.begin(), result_.wanted.end(), moreUrgent);
+    return std::move(result_);
+}
+
+Shown Traversal::visit(Cell cell) {
+    if (overflowed_) return {};
+    const HeightRange ground = bounds_.surface(cell.ground);
+    if (!frustum_.mayMeet(boxOf(cell.id, {bounds_.wallFoot(cell.ground), ground.max}, tree_.tiling()))) return {};
+    const Metres distance = distanceTo(boxOf(cell.id, ground, tree_.tiling()), view_.eye);
+    chooseHeights(cell, distance);
+    chooseImagery(cell, distance);
+    if (cell.heights.settled && cell.imagery.settled) return emit(cell, distance);
+
+    // Split; where that shows nothing finer, draw the one cell instead.
+    const size_t before = result_.nodes.size();
+    const Shown beneath = visitChildren(cell);
+    const bool finer = beneath.heights > cell.heights.drawn->level + 1 ||
+                       beneath.imagery > (cell.imagery.drawn ? cell.imagery.drawn->level + 1 : 0);
+    if (finer || result_.nodes.size() == before) return beneath;
+    result_.nodes.resize(before);
+    return emit(cell, distance);
+}
+
+Shown Traversal::visitChildren(const Cell& cell) {
+    Shown all;
+    for (const uint32_t quadrant : frontToBack(cell.id, view_.eye, tree_.tiling())) {
+        const auto child = childOf(cell, quadrant);
+        if (!child) continue;
+        const Shown shown = visit(*child);
+        all = {std::max(all.heights, shown.heights), std::max(all.imagery, shown.imagery)};
+    }
+    return all;
+}
+
+std::optional<Cell> Traversal::childOf(const Cell& cell, uint32_t quadrant) const {
+    Cell child = cell;
+    child.id = cell.id.child(quadrant);
+    const uint32_t deepest = std::min(tree_.finestHeightLevel(), cell.heights.drawn->level + kMaxStandInLevels);
+    child.ground = bounds_.ofChild(cell.ground, child.id, deepest);
+    if (!child.ground[4].surface) return {};
+    if (!cell.imagery.settled && !tree_.imagery(child.id)->exists) child.imagery = {.settled = true, .exact = true};
+    return child;
+}
+
+void Traversal::chooseHeights(Cell& cell, Metres distance) {
+    Choice& choice = cell.heights;
+    if (choice.settled) return;
+    const auto& own = *tree_.heights(cell.id);
+    const Pixels standInError = screenError(Metres(tree_.heights(*choice.drawn)->record.error), distance, view_);
+    if (own.resident) choice.drawn = cell.id;
+    const bool fineEnough = cell.id.level == tree_.finestHeightLevel() ||
+                            screenError(Metres(own.record.error), distance, view_) <= options_.tolerance * coarsening_;
+    const bool mustLoadFirst = !own.childrenKnown || cell.id.level - choice.drawn->level >= kMaxStandInLevels;
+    if (!fineEnough && !mustLoadFirst) return;
+    choice.settled = true;
+    choice.exact = own.resident;
+    if (!choice.exact) result_.wanted.push_back({TileLayer::heights, cell.id, standInError.value()});
+}
+
+void Traversal::chooseImagery(Cell& cell, Metres distance) {
+    Choice& choice = cell.imagery;
+    if (choice.settled) return;
+    const auto* own = tree_.imagery(cell.id);  // null only for a root that has not been learnt
+    const Pixels standInTexel = texelSide(choice.drawn ? choice.drawn->level : 0, distance);
+    if (own != nullptr && own->resident) choice.drawn = cell.id;
+    const bool fineEnough = cell.id.level == *tree_.finestImageryLevel() ||
+                            texelSide(cell.id.level, distance) <= options_.imageryTolerance * coarsening_;
+    const bool mustLoadFirst = own == nullptr || !own->childrenKnown;
+    if (!fineEnough && !mustLoadFirst) return;
+    choice.settled = true;
+    choice.exact = own != nullptr && own->resident;
+    if (!choice.exact) result_.wanted.push_back({TileLayer::imagery, cell.id, standInTexel.value()});
+}
+
+Shown Traversal::emit(const Cell& cell, Metres distance) {
+    const HeightRecord& source = tree_.heights(*cell.heights.drawn)->record;
+    const DrawNode node{
+        .cell = cell.id,
+        .heightTile = *cell.heights.drawn,
+        .imageryTile = cell.imagery.drawn,
+        .minHeight = bounds_.wallFoot(cell.ground),
+        .maxHeight = std::min(double{source.maxHeight}, bounds_.top(cell.ground)),
+        .screenError = screenError(Metres(source.error), distance, view_).value(),
+        .heightsExact = cell.heights.settled && cell.heights.exact,
+        .imageryExact = cell.imagery.settled && cell.imagery.exact,
+    };
+    if (!frustum_.mayMeet(boxOf(cell.id, {node.minHeight, node.maxHeight}, tree_.tiling()))) return {};
+    result_.nodes.push_back(node);
+    overflowed_ = result_.nodes.size() > 4 * options_.maxNodes + 64;  // some may yet be merged, but not that many
+    const bool noPhoto = node.imageryExact && !node.imageryTile;
+    return {node.heightTile.level + 1, noPhoto ? kNoPhoto : node.imageryTile ? node.imageryTile->level + 1 : 0};
+}
+
+/// The selection with tolerances multiplied by `coarsening`, if maxNodes can hold it.
+std::optional<Selection> fitting(const TileTree& tree, const View& view, const SelectionOptions& options,
+                                 double coarsening) {
+    Traversal traversal(tree, view, options, coarsening);
+    Selection selection = traversal.run();
+    if (traversal.overflowed() || selection.nodes.size() > options.maxNodes) return {};
+    return selection;
+}
+
+}  // namespace
+
+Pixels screenError(Metres error, Metres distance, const View& view) {
+    return Pixels(error.value() / std::max(distance.value(), 1e-3) * view.focalPixels());
+}
+
+Selection select(const TileTree& tree, const View& view, const SelectionOptions& options) {
+    TERRAY_CHECK_OP(options.maxNodes, >, size_t{0});
+    if (auto whole = fitting(tree, view, options, 1)) return std::move(*whole);
+
+    // Too long: the least coarsening that fits, to within 10 %, so that detail is given up alike near and far.
+    double tooFine = 1, coarse = 2;
+    auto best = fitting(tree, view, options, coarse);
+    for (; !best; best = fitting(tree, view, options, coarse)) {
+        tooFine = coarse;
+        coarse *= 4;
+        TERRAY_CHECK_OP(coarse, <, 1e30);  // the root alone always fits
+    }
+    while (coarse > 1.1 * tooFine) {
+        const double middle = std::sqrt(tooFine * coarse);
+        if (auto finer = fitting(tree, view, options, middle)) {
+            best = std::move(finer);
+            coarse = middle;
+        } else {
+            tooFine = middle;
+        }
+    }
+    best->limited = true;
+    return std::move(*best);
+}
+
+}  // namespace terray

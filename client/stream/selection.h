@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "client/stream/dataset_source.h"
+#include "client/stream/tile_tree.h"
+#include "common/draw_node.h"
+#include "common/units.h"
+#include "common/view.h"
+
+namespace terray {
+
+// The algorithm in words.
+//
+// Cells of the quadtree are visited from the root in pre-order, the children of a cell in the order in which rays from
+// the eye meet them (the quadrant on the eye's side first, the opposite one last), so the draw list comes out front to
+// back. A cell outside the view frustum is skipped. A cell asks to be split while its height tile's geometric error, or
+// a texel of its photo, is larger on the screen than the tolerance and a finer tile exists. Heights and photo ask
+// independently: a cell may go on splitting for its photo while its heights stay those of an ancestor. A finer tile
+// that is wanted but not resident is put on the wanted list; meanwhile the nearest resident ancestor stands in for it
+// with a sub-rectangle. When none of the four children has anything finer to show, the cell is not split. A child whose
+// record says that it has no surface is not drawn: there is nothing there. Last, the box of each node is taken down to
+// where no neighbour's surface can lie below it (see DrawNode::minHeight).
+
+struct SelectionOptions {
+    Pixels tolerance{2.0 / 3.0};   ///< of the projected geometric error (paper 001, section 4)
+    Pixels imageryTolerance{1.0};  ///< of the projected side of a photo texel
+    bool useImagery = true;
+    size_t maxNodes = 4096;  ///< the draw list never gets longer; refinement stops, coarse cells remain
+};
+
+/// A tile to load: wanted for this view and not resident.
+struct TileRequest {
+    TileLayer layer = TileLayer::heights;
+    TileId id;
+    double priority = 0;  ///< projected error in pixels that its absence costs; greater is more urgent
+    bool operator==(const TileRequest&) const = default;
+};
+
+struct Selection {
+    std::vector<DrawNode> nodes;      ///< front to back
+    std::vector<TileRequest> wanted;  ///< most urgent first; ties in a fixed order
+    bool limited = false;             ///< maxNodes stopped refinement
+    [[nodiscard]] bool complete() const { return wanted.empty(); }
+};
+
+/// Size on screen of a tile's geometric error.
+///
+/// @param error     how far the tile's surface may lie from the finest data, >= 0
+/// @param distance  from the eye to the nearest point of the tile's bounds; below 1 mm counts as 1 mm
+/// @return          pixels, exact on the image axis. At angle t off the axis the true size is up to
+///                  1/cos(t)^2 larger (1.57 at 37 degrees), since |grad(f x/z)| = f / (d cos(t)^2).
+[[nodiscard]] Pixels screenError(Metres error, Metres distance, const View& view);
+
+/// A pure function: same tree, view and options, same answer. The root tiles must be resident.
+[[nodiscard]] Selection select(const TileTree& tree, const View& view, const SelectionOptions& options);
+
+}  // namespace terray

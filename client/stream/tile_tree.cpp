@@ -1,0 +1,57 @@
+#include "client/stream/tile_tree.h"
+
+#include "common/check.h"
+
+namespace terray {
+
+TileTree::TileTree(const Tiling& tiling, uint32_t finestHeightLevel, std::optional<uint32_t> finestImageryLevel)
+    : tiling_(tiling), finestHeightLevel_(finestHeightLevel), finestImageryLevel_(finestImageryLevel) {
+    TERRAY_CHECK_OP(finestHeightLevel, <=, kMaxTileLevel);
+    TERRAY_CHECK_OP(finestImageryLevel.value_or(0), <=, kMaxTileLevel);
+}
+
+void TileTree::learn(const HeightTile& tile) {
+    TERRAY_CHECK_OP(tile.id.level, <=, finestHeightLevel_);
+    Heights& own = heights_[tile.id];
+    own.record = tile.record;
+    own.metresPerCode = tile.encoding.metresPerCode();
+    own.childrenKnown = true;
+    if (tile.id.level == finestHeightLevel_) return;
+    for (uint32_t quadrant = 0; quadrant < 4; ++quadrant)
+        heights_.try_emplace(tile.id.child(quadrant), Heights{.record = tile.children[quadrant]});
+}
+
+void TileTree::learn(const ImageryTile& tile) {
+    TERRAY_CHECK(finestImageryLevel_.has_value());
+    TERRAY_CHECK_OP(tile.id.level, <=, *finestImageryLevel_);
+    Imagery& own = imagery_[tile.id];
+    own.exists = true;
+    own.childrenKnown = true;
+    if (tile.id.level == *finestImageryLevel_) return;
+    for (uint32_t quadrant = 0; quadrant < 4; ++quadrant)
+        imagery_.try_emplace(tile.id.child(quadrant), Imagery{.exists = tile.childExists[quadrant]});
+}
+
+void TileTree::setHeightsResident(const TileId& id, bool resident) {
+    const auto found = heights_.find(id);
+    TERRAY_CHECK(found != heights_.end() && found->second.childrenKnown);
+    found->second.resident = resident;
+}
+
+void TileTree::setImageryResident(const TileId& id, bool resident) {
+    const auto found = imagery_.find(id);
+    TERRAY_CHECK(found != imagery_.end() && found->second.childrenKnown);
+    found->second.resident = resident;
+}
+
+const TileTree::Heights* TileTree::heights(const TileId& id) const {
+    const auto found = heights_.find(id);
+    return found == heights_.end() ? nullptr : &found->second;
+}
+
+const TileTree::Imagery* TileTree::imagery(const TileId& id) const {
+    const auto found = imagery_.find(id);
+    return found == imagery_.end() ? nullptr : &found->second;
+}
+
+}  // namespace terray

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+
+#include "common/height_tile.h"
+#include "common/imagery_tile.h"
+#include "common/tiling.h"
+
+namespace terray {
+
+/// What the client knows of the quadtree so far: it grows from the root tile's own records, as tiles arrive, and needs
+/// no index of the dataset (design, section 2: every tile describes its children).
+///
+/// Knowledge of a tile (its record) is separate from residency (its samples are where the renderer can draw them).
+/// Residency is marked from outside. One thread.
+class TileTree {
+  public:
+    struct Heights {
+        HeightRecord record;
+        double metresPerCode = 0;    ///< of its codes; 0 until the tile has arrived once
+        bool childrenKnown = false;  ///< the tile has arrived once, so its children's records are in the tree
+        bool resident = false;       ///< on the GPU
+    };
+    struct Imagery {
+        bool exists = false;
+        bool childrenKnown = false;
+        bool resident = false;
+    };
+
+    TileTree(const Tiling& tiling, uint32_t finestHeightLevel, std::optional<uint32_t> finestImageryLevel);
+
+    [[nodiscard]] const Tiling& tiling() const { return tiling_; }
+    [[nodiscard]] bool hasImagery() const { return finestImageryLevel_.has_value(); }
+    [[nodiscard]] uint32_t finestHeightLevel() const { return finestHeightLevel_; }
+    [[nodiscard]] std::optional<uint32_t> finestImageryLevel() const { return finestImageryLevel_; }
+
+    /// Takes over what a tile says of itself and its children.
+    void learn(const HeightTile& tile);
+    void learn(const ImageryTile& tile);
+    /// Marks tiles as drawable or not. The tile must have been learnt.
+    void setHeightsResident(const TileId& id, bool resident);
+    void setImageryResident(const TileId& id, bool resident);
+
+    /// What is known of a tile; nullptr when no loaded tile has spoken of it yet.
+    [[nodiscard]] const Heights* heights(const TileId& id) const;
+    [[nodiscard]] const Imagery* imagery(const TileId& id) const;
+    [[nodiscard]] size_t knownTiles() const { return heights_.size() + imagery_.size(); }
+
+  private:
+    Tiling tiling_;
+    uint32_t finestHeightLevel_;
+    std::optional<uint32_t> finestImageryLevel_;
+    std::unordered_map<TileId, Heights> heights_;
+    std::unordered_map<TileId, Imagery> imagery_;
+};
+
+}  // namespace terray
