@@ -16,11 +16,17 @@ namespace terray {
 // the eye meet them (the quadrant on the eye's side first, the opposite one last), so the draw list comes out front to
 // back. A cell outside the view frustum is skipped. A cell asks to be split while its height tile's geometric error, or
 // a texel of its photo, is larger on the screen than the tolerance and a finer tile exists. Heights and photo ask
-// independently: a cell may go on splitting for its photo while its heights stay those of an ancestor. A finer tile
-// that is wanted but not resident is put on the wanted list; meanwhile the nearest resident ancestor stands in for it
-// with a sub-rectangle. When none of the four children has anything finer to show, the cell is not split. A child whose
-// record says that it has no surface is not drawn: there is nothing there. Last, the box of each node is taken down to
-// where no neighbour's surface can lie below it (see DrawNode::minHeight).
+// independently: a cell may go on splitting for its photo while its heights stay those of an ancestor.
+//
+// A finer tile that is wanted but not resident is put on the wanted list; meanwhile the nearest resident ancestor
+// stands in for it with a sub-rectangle. When none of the four children has anything finer to show, the cell is not
+// split. A child whose record says that it has no surface is not drawn: there is nothing there.
+//
+// The box of a cell reaches down to the lowest finest sample that may lie in it or in the eight squares of its size
+// around it: no surface that a neighbour may show, whatever tile it is drawn from, lies lower, so the cell's walls
+// close every level jump. Culling uses these boxes too, for a wall may be all of a cell that the picture sees. (Not the
+// neighbours' errors in place of their bounds: a coarse tile's apron is a mean, and hides a pit that a finer neighbour
+// shows.)
 
 struct SelectionOptions {
     Pixels tolerance{2.0 / 3.0};   ///< of the projected geometric error (paper 001, section 4)
