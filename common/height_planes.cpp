@@ -1,6 +1,8 @@
 #include "common/height_planes.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace terray {
@@ -21,40 +23,33 @@ size_t maskBytes(GridSize size) {
 
 /// Codes with each hole replaced by its western neighbour (at the western edge: by the northern one; at the start: by
 /// the first surface of the tile), so that a hole costs no residual beyond its rim.
-Grid<uint16_t> withHolesFilled(GridView<const uint16_t> codes) {
-    Grid<uint16_t> filled(codes.size());
-    uint16_t above = 0;
-    for (int64_t y = 0; y < codes.height() && above == 0; ++y)
-        for (const uint16_t code : codes.row(y))
-            if (above == 0) above = code;
+Grid<uint16_t> withHolesFilled(const Grid<uint16_t>& codes) {
+    const auto first =
+        std::find_if(codes.cells().begin(), codes.cells().end(), [](uint16_t code) { return code != 0; });
+    uint16_t above = first == codes.cells().end() ? uint16_t{0} : *first;
+    Grid<uint16_t> filled = codes;
     for (int64_t y = 0; y < codes.height(); ++y) {
         uint16_t last = above;
-        for (int64_t x = 0; x < codes.width(); ++x) {
-            if (codes.at(x, y) != 0) last = codes.at(x, y);
-            filled.at(x, y) = last;
-        }
+        for (uint16_t& code : filled.view().row(y)) code = last = code != 0 ? code : last;
         above = filled.at(0, y);
     }
     return filled;
 }
 
-void writeMask(GridView<const uint16_t> codes, std::span<std::byte> mask) {
-    size_t cell = 0;
-    for (int64_t y = 0; y < codes.height(); ++y)
-        for (const uint16_t code : codes.row(y)) {
-            if (code != 0) mask[cell / 8] |= std::byte{1} << (cell % 8);
-            ++cell;
-        }
+void writeMask(std::span<const uint16_t> codes, std::span<std::byte> mask) {
+    for (size_t cell = 0; cell < codes.size(); ++cell)
+        if (codes[cell] != 0) mask[cell / 8] |= std::byte{1} << (cell % 8);
 }
 
-void applyMask(ByteView mask, GridView<uint16_t> codes) {
-    size_t cell = 0;
-    for (int64_t y = 0; y < codes.height(); ++y)
-        for (uint16_t& code : codes.row(y)) {
-            const auto isSurface = static_cast<int>(mask[cell / 8] >> (cell % 8)) & 1;
-            code = static_cast<uint16_t>(code & -isSurface);
-            ++cell;
-        }
+/// Eight cells at a time, since nearly all eights are whole ground or whole hole.
+void applyMask(ByteView mask, std::span<uint16_t> codes) {
+    for (const std::byte eight : mask) {
+        const auto cells = codes.first(std::min<size_t>(8, codes.size()));
+        codes = codes.subspan(cells.size());
+        if (eight == std::byte{0xFF}) continue;
+        for (size_t i = 0; i < cells.size(); ++i)
+            if ((eight >> i & std::byte{1}) == std::byte{0}) cells[i] = 0;
+    }
 }
 
 /// Residuals of one row against the row above (all zero for the first), folded and split into bytes.
@@ -86,41 +81,42 @@ size_t heightPlaneBytes(GridSize size, bool hasHoles) {
     return 2 * static_cast<size_t>(size.count()) + (hasHoles ? maskBytes(size) : 0);
 }
 
-Bytes planesFromCodes(GridView<const uint16_t> codes, bool hasHoles) {
+Bytes planesFromCodes(const Grid<uint16_t>& codes, bool hasHoles) {
     const GridSize size = codes.size();
     Bytes planes(heightPlaneBytes(size, hasHoles));
     std::byte* next = planes.data();
     Grid<uint16_t> filled;
     if (hasHoles) {
-        writeMask(codes, {next, maskBytes(size)});
+        writeMask(codes.cells(), {next, maskBytes(size)});
         next += maskBytes(size);
         filled = withHolesFilled(codes);
-        codes = filled.view();
     }
+    const GridView<const uint16_t> ground = hasHoles ? std::as_const(filled).view() : codes.view();
     const GridView<std::byte> low(next, size);
     const GridView<std::byte> high(next + size.count(), size);
     const std::vector<uint16_t> zeros(static_cast<size_t>(size.width));
     std::span<const uint16_t> above = zeros;
     for (int64_t y = 0; y < size.height; ++y) {
-        splitRow(codes.row(y), above, low.row(y), high.row(y));
-        above = codes.row(y);
+        splitRow(ground.row(y), above, low.row(y), high.row(y));
+        above = ground.row(y);
     }
     return planes;
 }
 
-void codesFromPlanes(ByteView planes, bool hasHoles, GridView<uint16_t> codes) {
-    const GridSize size = codes.size();
+Grid<uint16_t> codesFromPlanes(ByteView planes, bool hasHoles, GridSize size) {
     TERRAY_CHECK_OP(planes.size(), ==, heightPlaneBytes(size, hasHoles));
-    const std::byte* const first = planes.data() + (hasHoles ? maskBytes(size) : 0);
-    const GridView<const std::byte> low(first, size);
-    const GridView<const std::byte> high(first + size.count(), size);
+    const size_t masked = hasHoles ? maskBytes(size) : 0;
+    const GridView<const std::byte> low(planes.data() + masked, size);
+    const GridView<const std::byte> high(planes.data() + masked + size.count(), size);
+    Grid<uint16_t> codes(size);
     const std::vector<uint16_t> zeros(static_cast<size_t>(size.width));
     std::span<const uint16_t> above = zeros;
     for (int64_t y = 0; y < size.height; ++y) {
-        joinRow(low.row(y), high.row(y), above, codes.row(y));
-        above = codes.row(y);
+        joinRow(low.row(y), high.row(y), above, codes.view().row(y));
+        above = codes.view().row(y);
     }
-    if (hasHoles) applyMask(planes.first(maskBytes(size)), codes);
+    if (hasHoles) applyMask(planes.first(masked), codes.cells());
+    return codes;
 }
 
 }  // namespace terray

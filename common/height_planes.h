@@ -1,8 +1,5 @@
 #pragma once
 
-#include <optional>
-#include <span>
-
 #include "common/bytes.h"
 #include "common/grid.h"
 
@@ -18,10 +15,10 @@ namespace terray {
 [[nodiscard]] size_t heightPlaneBytes(GridSize size, bool hasHoles);
 
 /// The planes of some codes; hasHoles must say whether any of them is 0.
-[[nodiscard]] Bytes planesFromCodes(GridView<const uint16_t> codes, bool hasHoles);
+[[nodiscard]] Bytes planesFromCodes(const Grid<uint16_t>& codes, bool hasHoles);
 
-/// The inverse, row by row in loops that vectorise. planes must have heightPlaneBytes() of them; any content is
-/// accepted.
-void codesFromPlanes(ByteView planes, bool hasHoles, GridView<uint16_t> codes);
+/// The inverse, row by row in loops that vectorise. planes must be heightPlaneBytes(size, hasHoles); any content is
+/// taken.
+[[nodiscard]] Grid<uint16_t> codesFromPlanes(ByteView planes, bool hasHoles, GridSize size);
 
 }  // namespace terray

@@ -18,7 +18,7 @@ constexpr size_t kRecordBytes = 16;
 constexpr size_t kFieldBytes = 20 + 5 * kRecordBytes;
 constexpr uint32_t kMaxExponent = 40;
 constexpr double kMaxOffset = 1099511627776.0;  // 2^40
-constexpr int kZstdLevel = 3;                   // FORMAT.md holds the measurements behind it
+constexpr int kZstdLevel = 1;                   // FORMAT.md holds the measurements behind it
 
 constexpr uint32_t kExistsBit = 1;
 constexpr uint32_t kHolesBit = 2;
@@ -161,7 +161,7 @@ Bytes encodeHeightTile(const HeightTile& tile) {
         TERRAY_CHECK(child.exists || child == HeightRecord{});
         writeRecord(out, child);
     }
-    sealPayload(out, zstdCompress(planesFromCodes(tile.codes.view(), tile.record.hasHoles), kZstdLevel));
+    sealPayload(out, zstdCompress(planesFromCodes(tile.codes, tile.record.hasHoles), kZstdLevel));
     return out.release();
 }
 
@@ -180,8 +180,7 @@ Result<HeightTile> decodeHeightTile(ByteView payload, std::optional<TileId> expe
     thread_local Bytes planes;  // kept, since clearing half a megabyte for each tile would cost as much as decoding it
     planes.resize(heightPlaneBytes(kSize, tile.record.hasHoles));
     if (!zstdDecompress(opened->body, planes)) return Failure{name + ": its codes do not unpack to their size"};
-    tile.codes = Grid<uint16_t>(kSize);
-    codesFromPlanes(planes, tile.record.hasHoles, tile.codes.view());
+    tile.codes = codesFromPlanes(planes, tile.record.hasHoles, kSize);
     if (measureRecord(tile.codes, tile.encoding, tile.record.error) != tile.record)
         return Failure{name + ": its record does not agree with its codes"};
     return std::move(tile);

@@ -1,6 +1,7 @@
 #include "common/imagery_tile.h"
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "common/grid.h"
@@ -15,8 +16,8 @@ constexpr size_t kFieldBytes = 4;
 constexpr int kZstdLevel = 3;  // FORMAT.md holds the measurements behind it
 constexpr int kBlockSide = 4;  // texels
 
-/// How the blocks are stored: plain, or as one zstd frame when that is smaller.
-enum class BlockCodec : uint8_t { raw = 0, zstd = 1 };
+/// How the blocks are stored: as they are, or split into halves within one zstd frame when that is smaller.
+enum class BlockCodec : uint8_t { raw = 0, splitZstd = 1 };
 
 size_t mipOffset(int mip) {
     size_t offset = 0;
@@ -30,6 +31,33 @@ int mipsStored(const TileId& id) {
 }
 
 using Block = std::array<std::byte, kBc1BlockBytes>;
+using HalfBlock = std::array<std::byte, kBc1BlockBytes / 2>;
+
+/// The first halves of all blocks (two colours), then the second halves (sixteen choices between them): like stands
+/// beside like, which saves about a tenth of the compressed size.
+Bytes splitHalves(ByteView blocks) {
+    Bytes halves(blocks.size());
+    const size_t count = blocks.size() / kBc1BlockBytes;
+    const std::span first(reinterpret_cast<HalfBlock*>(halves.data()), count);
+    const std::span second(reinterpret_cast<HalfBlock*>(halves.data()) + count, count);
+    for (size_t i = 0; i < count; ++i) {
+        std::memcpy(&first[i], &blocks[kBc1BlockBytes * i], sizeof(HalfBlock));
+        std::memcpy(&second[i], &blocks[kBc1BlockBytes * i + sizeof(HalfBlock)], sizeof(HalfBlock));
+    }
+    return halves;
+}
+
+Bytes joinHalves(ByteView halves) {
+    Bytes blocks(halves.size());
+    const size_t count = halves.size() / kBc1BlockBytes;
+    const std::span first(reinterpret_cast<const HalfBlock*>(halves.data()), count);
+    const std::span second(reinterpret_cast<const HalfBlock*>(halves.data()) + count, count);
+    for (size_t i = 0; i < count; ++i) {
+        std::memcpy(&blocks[kBc1BlockBytes * i], &first[i], sizeof(HalfBlock));
+        std::memcpy(&blocks[kBc1BlockBytes * i + sizeof(HalfBlock)], &second[i], sizeof(HalfBlock));
+    }
+    return blocks;
+}
 
 template <class BlockType, class ByteType>
 GridView<BlockType> blockView(ByteType* bytes, int mip) {
@@ -58,11 +86,11 @@ Bytes encodeImageryTile(const ImageryTile& tile) {
     TERRAY_CHECK_OP(tile.mips, ==, mipsStored(tile.id));
     TERRAY_CHECK_OP(tile.blocks.size(), ==, mipOffset(tile.mips));
 
-    const Bytes packed = zstdCompress(tile.blocks, kZstdLevel);
+    const Bytes packed = zstdCompress(splitHalves(tile.blocks), kZstdLevel);
     const bool smaller = packed.size() < tile.blocks.size();
     PayloadPrefix prefix = kPrefix;
     prefix.id = tile.id;
-    prefix.codec = static_cast<uint8_t>(smaller ? BlockCodec::zstd : BlockCodec::raw);
+    prefix.codec = static_cast<uint8_t>(smaller ? BlockCodec::splitZstd : BlockCodec::raw);
     for (size_t quadrant = 0; quadrant < 4; ++quadrant)
         if (tile.childExists[quadrant]) prefix.flags = static_cast<uint8_t>(prefix.flags | 1U << quadrant);
     ByteWriter out;
@@ -94,10 +122,11 @@ Result<ImageryTile> decodeImageryTile(ByteView payload, std::optional<TileId> ex
                                std::to_string(size)};
             tile.blocks.assign(opened->body.begin(), opened->body.end());
             return tile;
-        case BlockCodec::zstd:
-            tile.blocks.resize(size);
-            if (!zstdDecompress(opened->body, tile.blocks))
+        case BlockCodec::splitZstd:
+            Bytes halves(size);
+            if (!zstdDecompress(opened->body, halves))
                 return Failure{name + ": its blocks do not unpack to their size"};
+            tile.blocks = joinHalves(halves);
             return tile;
     }
     return Failure{name + ": codec " + std::to_string(opened->prefix.codec) + " is unknown"};
