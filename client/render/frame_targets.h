@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "client/render/feature_set.h"
+#include "client/render/gl_objects.h"
+#include "common/grid.h"
+
+namespace terray {
+
+/// How colours leave the resolve pass.
+enum class ColourFormat : uint8_t {
+    srgb8,        ///< 8-bit sRGB, for PNG and the screen
+    linearFloat,  ///< linear half floats, for EXR
+};
+
+/// The textures that a frame is drawn into. Sizes in pixels; row 0 of every texture is the BOTTOM of the picture (GL),
+/// the read-back functions turn that round: row 0 of their grids is the top.
+///
+/// Reading back waits for the GPU; asking for what the features or the format leave out is misuse. GL thread only.
+/// Throws Error(graphics) when the driver cannot make the framebuffers.
+class FrameTargets {
+  public:
+    FrameTargets(int width, int height, const FeatureSet& features, ColourFormat format = ColourFormat::srgb8);
+
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
+    [[nodiscard]] const FeatureSet& features() const { return features_; }
+    [[nodiscard]] uint64_t bytes() const { return bytes_; }
+
+    /// sRGB bytes, alpha 255; needs ColourFormat::srgb8.
+    [[nodiscard]] Grid<std::array<uint8_t, 4>> readSrgb() const;
+    /// Linear colour; needs ColourFormat::linearFloat.
+    [[nodiscard]] Grid<glm::vec4> readLinear() const;
+    /// Hit in the node's tile frame (x, y, z) and view depth t in metres (w).
+    [[nodiscard]] Grid<glm::vec4> readHits() const;
+    /// Index of the node hit plus 1; 0 is sky.
+    [[nodiscard]] Grid<uint32_t> readNodes() const;
+    /// Bits 0..15: steps of the pixel's ray over all nodes; bit 31: it ran out of steps. Needs FeatureSet::statistics.
+    [[nodiscard]] Grid<uint32_t> readSteps() const;
+    /// World normals (east, north, up), unit length, 0 where there is sky. Needs FeatureSet::normals.
+    [[nodiscard]] Grid<glm::vec3> readNormals() const;
+
+    // For the renderer. Textures of features that are off have no name.
+    GlTexture id, hit, node, depth, steps, normal, colour;
+    GlFramebuffer idFramebuffer, marchFramebuffer,
+        resolveFramebuffer;  ///< {id | depth}, {hit, node | depth}, {colour, normal}
+
+  private:
+    int width_;
+    int height_;
+    FeatureSet features_;
+    ColourFormat format_;
+    uint64_t bytes_ = 0;
+};
+
+}  // namespace terray

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+
+#include "client/render/gl_objects.h"
+#include "client/render/shader_library.h"
+#include "client/render/slot_table.h"
+#include "common/bytes.h"
+#include "common/height_tile.h"
+#include "common/imagery_tile.h"
+#include "common/tile_id.h"
+
+namespace terray {
+
+/// How much GPU memory tiles may take. Slots are allocated once, as layers of texture arrays.
+struct GpuTilesOptions {
+    uint64_t heightBudgetBytes = 256ull << 20;
+    uint64_t imageryBudgetBytes = 256ull << 20;
+    /// Upper bounds from the dataset: no more slots than it has tiles. 0 imagery tiles: no imagery texture exists at
+    /// all.
+    uint64_t heightTiles = 0;
+    uint64_t imageryTiles = 0;
+};
+
+/// GPU bytes by kind.
+struct GpuTileBytes {
+    uint64_t heights = 0;  ///< level 0 of the height array: 516 x 516 codes a slot
+    uint64_t maxima = 0;   ///< its mip levels 1..9, the maximum mipmap
+    uint64_t imagery = 0;  ///< BC1 with its 4 mips
+};
+
+/// What the renderer must know of a resident height tile.
+struct ResidentHeights {
+    uint32_t slot = 0;  ///< layer of the array
+    HeightEncoding encoding;
+    HeightRecord record;
+};
+
+/// The tiles that live on the GPU, in slots of two texture arrays, least recently used first out.
+///
+/// Heights: R16UI, 516 x 516, 10 levels. Level 0 holds the codes with their apron. Level l = 1..9 holds in its texels
+/// [0, 512 >> l)^2 the maximum of the 2^l x 2^l core codes beneath (0 where there is no surface), built by compute
+/// shader on arrival: the maximum mipmap of paper 001, section 3.2, in one texture, since mip sizes 258, 129, 64 ... 1
+/// of the apron texture are large enough for it.
+/// Imagery: BC1 sRGB, 576 x 576, 4 levels.
+///
+/// GL thread only. Never more than the budgets, except that there is at least one slot of each kind that is used.
+/// Throws Error(graphics) when the driver has less memory than that. Uploads change the current program, texture unit 0
+/// and image units 0..4.
+class GpuTiles {
+  public:
+    GpuTiles(const ShaderLibrary& shaders, const GpuTilesOptions& options);
+
+    /// Uploads a tile and builds its pyramid, evicting the least recently used tile that is not pinned by the current
+    /// frame when all slots are taken. A resident tile is replaced where it is. The tile is not pinned by this.
+    /// @return done, with the evicted tile's id if one had to go; not done when every slot is pinned
+    struct Upload {
+        bool done = false;
+        std::optional<TileId> evicted;
+    };
+    Upload uploadHeights(const HeightTile& tile);
+    /// @param chain  gatherMipChain's bytes
+    Upload uploadImagery(const TileId& id, ByteView chain);
+
+    /// Starts a frame: nothing is pinned any more.
+    void beginFrame();
+    /// Marks a tile as used by this frame: most recently used, and not evictable until the next beginFrame().
+    /// It must be resident.
+    void pinHeights(const TileId& id);
+    void pinImagery(const TileId& id);
+    /// Marks as recently used without pinning (ancestors of what is drawn); a tile that is not resident is left alone.
+    void touchHeights(const TileId& id);
+    void touchImagery(const TileId& id);
+
+    [[nodiscard]] const ResidentHeights* heights(const TileId& id) const;
+    [[nodiscard]] std::optional<uint32_t> imagerySlot(const TileId& id) const;
+
+    [[nodiscard]] GLuint heightTexture() const { return heightTexture_.name(); }
+    /// 0 when the dataset has no imagery.
+    [[nodiscard]] GLuint imageryTexture() const { return imageryTexture_.name(); }
+    [[nodiscard]] uint32_t heightSlots() const { return heightSlots_.capacity(); }
+    [[nodiscard]] uint32_t imagerySlots() const { return imagerySlots_.capacity(); }
+    [[nodiscard]] size_t residentHeights() const { return heightSlots_.size(); }
+    [[nodiscard]] size_t residentImagery() const { return imagerySlots_.size(); }
+    /// Allocated, whether or not filled.
+    [[nodiscard]] GpuTileBytes allocatedBytes() const;
+    /// Bytes one upload moves, for upload budgets.
+    [[nodiscard]] static constexpr uint64_t heightUploadBytes() {
+        return uint64_t{kHeightTileSide} * kHeightTileSide * 2;
+    }
+    [[nodiscard]] static constexpr uint64_t imageryUploadBytes() { return imageryChainBytes(); }
+
+  private:
+    void buildMaxima(uint32_t slot);
+
+    SlotTable heightSlots_;
+    SlotTable imagerySlots_;
+    std::unordered_map<TileId, ResidentHeights> residentHeights_;
+    GlTexture heightTexture_;
+    GlTexture imageryTexture_;
+    GlProgram maximaProgram_;
+};
+
+}  // namespace terray

@@ -1,0 +1,271 @@
+#include "client/render/shader_library.h"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <regex>
+
+#include "client/render/embedded_shaders.h"
+#include "common/error.h"
+
+namespace terray {
+namespace {
+
+/// Files within files within files: more than this is a mistake.
+constexpr size_t kMaxIncludeDepth = 16;
+
+/// Calls visit(line number from 1, line without its end) for each line of a text.
+template <class Visit>
+void forEachLine(std::string_view text, Visit visit) {
+    for (int number = 1; !text.empty(); ++number) {
+        const size_t end = std::min(text.find('\n'), text.size());
+        visit(number, text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+}
+
+std::string_view trimmed(std::string_view text) {
+    const size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
+}
+
+/// What an include line asks for.
+struct Include {
+    bool foreign = false;  ///< a C++ header in angle brackets, of a file that is shared with C++
+    std::string name;      ///< relative to shaders/
+};
+
+std::optional<Include> parseInclude(std::string_view line) {
+    static const std::regex kInclude(R"(\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+    std::match_results<std::string_view::const_iterator> match;
+    if (line.find("include") == std::string_view::npos) return {};
+    if (!std::regex_match(line.begin(), line.end(), match, kInclude)) return {};
+    std::string name = match[2];
+    // C++ names shared files from the repository's root.
+    if (name.starts_with("shaders/")) name.erase(0, std::string_view("shaders/").size());
+    return Include{.foreign = match[1] == "<", .name = std::move(name)};
+}
+
+/// One shader's includes being resolved, depth first.
+class Resolver {
+  public:
+    using Source = std::function<Result<std::string>(const std::string&)>;
+    explicit Resolver(Source source) : source_(std::move(source)) {}
+
+    /// Appends a file and everything it includes. Nothing: success.
+    std::optional<Failure> add(const std::string& name) {
+        const Result<std::string> text = source_(name);
+        if (!text.ok()) return text.failure();
+        const size_t number = shader.files.size();
+        shader.files.push_back(name);
+        open_.push_back(name);
+        mark(1, number);
+        std::optional<Failure> failure;
+        forEachLine(text.value(), [&](int line, std::string_view content) {
+            if (failure) return;
+            const std::optional<Include> include = parseInclude(content);
+            if (!include) {
+                shader.text.append(content);
+                shader.text += '\n';
+                return;
+            }
+            failure = addInclude(*include, "shaders/" + name + ":" + std::to_string(line));
+            mark(line + 1, number);
+        });
+        open_.pop_back();
+        return failure;
+    }
+
+    ResolvedShader shader;
+
+  private:
+    std::optional<Failure> addInclude(const Include& include, const std::string& where) {
+        if (include.foreign) return {};
+        const auto refuse = [&](const std::string& why) {
+            return Failure{where + ": cannot include \"" + include.name + "\": " + why};
+        };
+        if (std::find(open_.begin(), open_.end(), include.name) != open_.end()) {
+            return refuse("it includes this file (a cycle)");
+        }
+        if (std::find(shader.files.begin(), shader.files.end(), include.name) != shader.files.end()) return {};
+        if (open_.size() > kMaxIncludeDepth) {
+            return refuse("more than " + std::to_string(kMaxIncludeDepth) + " files within each other");
+        }
+        const size_t before = shader.files.size();
+        std::optional<Failure> failure = add(include.name);
+        // Its own source is missing: say who asked. Deeper faults name their own line.
+        if (failure && shader.files.size() == before) return refuse(failure->message);
+        return failure;
+    }
+    /// The next line is `line` of file `number`.
+    void mark(int line, size_t number) {
+        shader.text += "#line " + std::to_string(line) + " " + std::to_string(number) + "\n";
+    }
+
+    Source source_;
+    std::vector<std::string> open_;  ///< the files whose includes are being resolved, outermost first
+};
+
+/// A line of a driver's log that speaks of a line of a shader.
+struct LogLine {
+    size_t file = 0;
+    int line = 0;
+    std::string message;
+};
+
+std::optional<LogLine> parseLogLine(std::string_view text, size_t files) {
+    static const std::regex kMesa(R"((\d{1,9}):(\d{1,9})\(\d+\)\s*:\s*(.*))");
+    static const std::regex kNvidia(R"((\d{1,9})\((\d{1,9})\)\s*:\s*(.*))");
+    static const std::regex kOthers(R"((ERROR|WARNING):\s*(\d{1,9}):(\d{1,9}):\s*(.*))");
+    std::match_results<std::string_view::const_iterator> match;
+    LogLine found;
+    const std::string_view line = trimmed(text);
+    const auto matches = [&](const std::regex& form) {
+        return std::regex_match(line.begin(), line.end(), match, form);
+    };
+    if (matches(kMesa) || matches(kNvidia)) {
+        found = {std::stoul(match[1]), std::stoi(match[2]), match[3]};
+    } else if (matches(kOthers)) {
+        found = {std::stoul(match[2]), std::stoi(match[3]),
+                 (match[1] == "ERROR" ? "error: " : "warning: ") + match[4].str()};
+    } else {
+        return {};
+    }
+    if (found.file >= files) return {};
+    return found;
+}
+
+/// Line `number` of a text, from 1; empty when there is none.
+std::string lineOf(std::string_view text, int number) {
+    std::string found;
+    forEachLine(text, [&](int at, std::string_view line) {
+        if (at == number) found = trimmed(line);
+    });
+    return found;
+}
+
+/// Rewrites a log; `source` may give a file's text, of which the line is then repeated below the message.
+std::string mapLog(std::string_view log, const std::vector<std::string>& files, const Resolver::Source& source) {
+    std::string mapped;
+    forEachLine(log, [&](int, std::string_view text) {
+        if (trimmed(text).empty() || text == std::string_view("\0", 1)) return;
+        const std::optional<LogLine> line = parseLogLine(text, files.size());
+        if (!line) {
+            mapped.append(text);
+            mapped += '\n';
+            return;
+        }
+        const std::string& file = files[line->file];
+        mapped += "shaders/" + file + ":" + std::to_string(line->line) + ": " + line->message + "\n";
+        if (!source) return;
+        const Result<std::string> content = source(file);
+        if (content.ok()) mapped += "    " + lineOf(content.value(), line->line) + "\n";
+    });
+    return mapped;
+}
+
+GLenum stageOf(const std::string& name) {
+    if (name.ends_with(".vert")) return GL_VERTEX_SHADER;
+    if (name.ends_with(".frag")) return GL_FRAGMENT_SHADER;
+    if (name.ends_with(".comp")) return GL_COMPUTE_SHADER;
+    return GL_NONE;
+}
+
+std::string shaderLog(GLuint shader) {
+    GLint length = 0;
+    glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<size_t>(std::max(length, 0)), '\0');
+    GLsizei written = 0;
+    if (length > 0) glGetShaderInfoLog(shader, length, &written, log.data());
+    log.resize(static_cast<size_t>(written));
+    return log;
+}
+
+std::string programLog(GLuint program) {
+    GLint length = 0;
+    glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<size_t>(std::max(length, 0)), '\0');
+    GLsizei written = 0;
+    if (length > 0) glGetProgramInfoLog(program, length, &written, log.data());
+    log.resize(static_cast<size_t>(written));
+    return log;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
+    return text;
+}
+
+}  // namespace
+
+ShaderLibrary::ShaderLibrary(std::optional<std::filesystem::path> directory) : directory_(std::move(directory)) {}
+
+Result<std::string> ShaderLibrary::source(const std::string& name) const {
+    // One name for each file, so that "once" means once.
+    if (name.starts_with('/') || name.find("..") != std::string::npos || name.find("./") != std::string::npos) {
+        return Failure{"\"" + name + "\" is not a plain name relative to shaders/"};
+    }
+    if (directory_) {
+        std::ifstream file(*directory_ / name, std::ios::binary);
+        if (file) return std::string(std::istreambuf_iterator<char>(file), {});
+    }
+    for (const EmbeddedShader& shader : embeddedShaders()) {
+        if (shader.name == name) return std::string(shader.text);
+    }
+    std::string places = "this program";
+    if (directory_) places = directory_->string() + " and " + places;
+    return Failure{"there is no shaders/" + name + " in " + places};
+}
+
+Result<ResolvedShader> ShaderLibrary::resolve(const std::string& name, const ShaderDefines& defines) const {
+    Resolver resolver([this](const std::string& file) { return source(file); });
+    resolver.shader.text = "#version 450 core\n";
+    for (const auto& [key, value] : defines) resolver.shader.text += "#define " + key + " " + value + "\n";
+    if (std::optional<Failure> failure = resolver.add(name)) return *failure;
+    return std::move(resolver.shader);
+}
+
+Result<GlProgram> ShaderLibrary::build(const std::vector<std::string>& names, const ShaderDefines& defines) const {
+    const auto failed = [&](const std::string& why) {
+        return Failure{"cannot build the GPU program " + joined(names) + ":\n" + why};
+    };
+    GlProgram program(glCreateProgram());
+    for (const std::string& name : names) {
+        const GLenum stage = stageOf(name);
+        if (stage == GL_NONE) return failed("shaders/" + name + " is none of .vert, .frag, .comp");
+        const Result<ResolvedShader> resolved = resolve(name, defines);
+        if (!resolved.ok()) return failed(resolved.failure().message);
+        const GlShader shader(glCreateShader(stage));
+        const char* const text = resolved->text.c_str();
+        glShaderSource(shader.name(), 1, &text, nullptr);
+        glCompileShader(shader.name());
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
+        if (compiled != GL_TRUE) {
+            return failed(mapLog(shaderLog(shader.name()), resolved->files,
+                                 [this](const std::string& file) { return source(file); }));
+        }
+        glAttachShader(program.name(), shader.name());  // keeps it alive as long as the program
+    }
+    glLinkProgram(program.name());
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+    // A linker's source numbers do not say of which stage they are, so its words are passed on as they are.
+    if (linked != GL_TRUE) return failed(programLog(program.name()));
+    return program;
+}
+
+GlProgram ShaderLibrary::require(const std::vector<std::string>& names, const ShaderDefines& defines) const {
+    Result<GlProgram> program = build(names, defines);
+    if (!program.ok()) throw Error(ExitCode::graphics, program.failure().message);
+    return std::move(program).value();
+}
+
+std::string mapShaderLog(std::string_view log, const std::vector<std::string>& files) {
+    return mapLog(log, files, {});
+}
+
+}  // namespace terray
