@@ -1,0 +1,287 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "common/check.h"
+#include "common/error.h"
+#include "common/geodesy.h"
+#include "preprocess/gdal_raster.h"
+#include "preprocess/raster_files.h"
+#include "preprocess/raster_groups.h"
+
+namespace terray {
+
+namespace {
+
+using gdal::RasterFacts;
+using gdal::VirtualRaster;
+
+/// "63.75 m", for notes.
+std::string metres(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g m", value);
+    return text;
+}
+
+/// A source value times scale plus offset is metres.
+struct HeightUnits {
+    double scale = 1;
+    double offset = 0;
+};
+
+/// What is opened for each reader: rasters of one grid, in the order in which they cover one another.
+struct HeightStack {
+    std::vector<VirtualRaster> keptAlive;  ///< the rasters and all that they are derived from
+    std::vector<std::string> rasters;      ///< names for GDAL; all have HeightGridInfo::size
+    HeightUnits units;
+    std::string label;  ///< of the whole, in messages
+};
+
+class GdalHeightReader final : public HeightReader {
+  public:
+    GdalHeightReader(const HeightStack& stack, GridSize size) : size_(size), units_(stack.units) {
+        for (const std::string& raster : stack.rasters) rasters_.emplace_back(raster, stack.label);
+    }
+
+    void read(const GridRect& window, GridView<float> out) override {
+        TERRAY_CHECK(out.size() == (GridSize{window.width, window.height}));
+        for (int64_t row = 0; row < out.height(); ++row) std::ranges::fill(out.row(row), kNoHeight);
+        const GridRect inside = intersection(window, {0, 0, size_.width, size_.height});
+        if (inside.empty()) return;
+        const GridView<float> target =
+            out.window({inside.x - window.x, inside.y - window.y, inside.width, inside.height});
+        rasters_.front().read(inside, target);
+        Grid<float> upper(rasters_.size() > 1 ? target.size() : GridSize{});
+        for (size_t i = 1; i < rasters_.size(); ++i) {
+            rasters_[i].read(inside, upper.view());
+            layOver(upper.view(), target);
+        }
+        convert(target);
+    }
+
+  private:
+    static void layOver(GridView<const float> upper, GridView<float> lower) {
+        for (int64_t row = 0; row < lower.height(); ++row)
+            std::ranges::transform(upper.row(row), lower.row(row), lower.row(row).begin(),
+                                   [](float above, float below) { return std::isnan(above) ? below : above; });
+    }
+    /// To metres; what is no number becomes a hole.
+    void convert(GridView<float> heights) const {
+        for (int64_t row = 0; row < heights.height(); ++row)
+            for (float& height : heights.row(row)) {
+                height = static_cast<float>(height * units_.scale + units_.offset);
+                if (!std::isfinite(height)) height = kNoHeight;
+            }
+    }
+
+    GridSize size_;
+    HeightUnits units_;
+    std::vector<gdal::RasterReader> rasters_;
+};
+
+class GdalHeights final : public HeightSource {
+  public:
+    GdalHeights(HeightGridInfo info, HeightStack stack) : info_(std::move(info)), stack_(std::move(stack)) {}
+    [[nodiscard]] const HeightGridInfo& info() const override { return info_; }
+    [[nodiscard]] std::unique_ptr<HeightReader> openReader() const override {
+        return std::make_unique<GdalHeightReader>(stack_, info_.size);
+    }
+
+  private:
+    HeightGridInfo info_;
+    HeightStack stack_;
+};
+
+/// Opens the sources step by step; each step adds to the stack and the info.
+class HeightOpener {
+  public:
+    explicit HeightOpener(const HeightSourceOptions& options) : options_(options) {}
+
+    std::unique_ptr<HeightSource> open() {
+        TERRAY_CHECK(!options_.files.empty());
+        gdal::limitCache(options_.cacheBytes);
+        inspectFiles();
+        chooseUnits();
+        placeFiles();
+        groupFiles();
+        chooseCrs();
+        chooseGrid();
+        for (const RasterFacts& raster : rasters_)
+            info_.files.insert(info_.files.end(), raster.files.begin(), raster.files.end());
+        return std::make_unique<GdalHeights>(std::move(info_), std::move(stack_));
+    }
+
+  private:
+    void note(const std::string& text) const {
+        if (options_.note) options_.note(text);
+    }
+
+    void inspectFiles() {
+        for (const std::string& file : options_.files) {
+            rasters_.push_back(gdal::inspect(file));
+            if (rasters_.back().name != file) note("heights are taken from " + rasters_.back().name);
+            for (const std::string& warning : rasters_.back().warnings)
+                note("GDAL warns about " + file + ": " + warning);
+        }
+        stack_.label = rasters_.front().name;
+        if (rasters_.size() > 1) stack_.label += " and " + std::to_string(rasters_.size() - 1) + " more";
+    }
+
+    /// One conversion to metres for all files: the file's own scale and offset, then its unit or the user's scale.
+    void chooseUnits() {
+        const RasterFacts& first = rasters_.front();
+        for (const RasterFacts& raster : rasters_)
+            if (raster.unit != first.unit || raster.scale != first.scale || raster.offset != first.offset)
+                throw Error(ExitCode::input, "cannot mosaic \"" + first.name + "\" and \"" + raster.name +
+                                                 "\": their heights differ in unit, scale or offset (\"" + first.unit +
+                                                 "\" and \"" + raster.unit + "\"); convert one with gdal_translate");
+        double userScale = options_.heightScale;
+        const std::string unit = first.unit.empty() ? first.crs.verticalUnit : first.unit;
+        const std::optional<double> metresPerUnit = metresPerHeightUnit(unit);
+        if (userScale == 1 && metresPerUnit.value_or(1) != 1) {
+            userScale = *metresPerUnit;
+            note("heights are in \"" + unit + "\": one unit is " + metres(userScale));
+        } else if (!unit.empty() && !metresPerUnit) {
+            note("heights are in \"" + unit + "\", a unit unknown here: taken as metres times --height-scale");
+        }
+        stack_.units = {first.scale * userScale, first.offset * userScale + options_.heightOffset};
+        const bool isInteger = std::ranges::all_of(rasters_, &RasterFacts::isInteger);
+        info_.sourceStep = isInteger ? std::abs(stack_.units.scale) : 0;
+    }
+
+    /// Sees that each file has a place, and gives the option's to one that has none.
+    void placeFiles() {
+        for (RasterFacts& raster : rasters_) {
+            if (!raster.geoTransform) placePlainRaster(raster);
+            if (!raster.crs.wkt.empty()) continue;
+            if (!options_.crs.empty()) raster.crs = gdal::describeCrs(options_.crs);
+            note("\"" + raster.name + "\" names no coordinate system: taken " +
+                 (options_.crs.empty() ? "as metres in an unnamed plane" : "to be in " + raster.crs.name));
+        }
+        for (const RasterFacts& raster : rasters_)
+            if (raster.crs.wkt.empty() != rasters_.front().crs.wkt.empty())
+                throw Error(ExitCode::georeference, "cannot mosaic \"" + rasters_.front().name + "\" and \"" +
+                                                        raster.name +
+                                                        "\": only one of them names its coordinate system");
+    }
+
+    void placePlainRaster(RasterFacts& raster) const {
+        const std::string what = "cannot place \"" + raster.name + "\": it does not say where it lies";
+        if (!options_.spacing)
+            throw Error(ExitCode::georeference, what + ". Give the metres between its samples: --spacing METRES");
+        if (rasters_.size() > 1) throw Error(ExitCode::georeference, what + ", so it cannot be part of a mosaic");
+        raster.geoTransform = {0, *options_.spacing, 0, 0, 0, -*options_.spacing};
+    }
+
+    /// Each file as 32-bit floats with NaN for nodata; files that share a grid side by side.
+    void groupFiles() {
+        groups_ = groupByGrid(rasters_);
+        for (RasterGroup& group : groups_) {
+            std::vector<std::string> parts;
+            for (const size_t index : group.members) parts.push_back(floatRaster(rasters_[index]));
+            group.raster = parts.front();
+            // A rotated raster cannot be laid beside others, and needs not be: the warp knows its nodata.
+            if (isNorthUp(group.transform)) group.raster = keep(gdal::mosaic(parts, {"-strict", "-vrtnodata", "nan"}));
+        }
+    }
+
+    std::string floatRaster(const RasterFacts& raster) {
+        std::vector<std::string> arguments{"-b", "1", "-ot", "Float32"};
+        const auto add = [&](std::initializer_list<std::string> more) {
+            arguments.insert(arguments.end(), more.begin(), more.end());
+        };
+        if (options_.nodata) add({"-a_nodata", exactText(*options_.nodata)});
+        if (!raster.crs.wkt.empty()) add({"-a_srs", raster.crs.wkt});
+        if (squareGrid(*raster.geoTransform, raster.size)) {
+            const GroundRect area = squareGrid(*raster.geoTransform, raster.size)->bounds();
+            add({"-a_ullr", exactText(area.west), exactText(area.north), exactText(area.east), exactText(area.south)});
+        }
+        return keep(gdal::translate(raster.name, arguments));
+    }
+
+    void chooseCrs() {
+        const Crs& own = groups_.front().crs;
+        crs_ = options_.crs.empty() ? own : gdal::describeCrs(options_.crs);
+        if (!options_.crs.empty() && !crs_.isMetric())
+            throw Error(ExitCode::georeference,
+                        "cannot build in " + crs_.name + ": expected a projected system in metres, such as EPSG:32632");
+        if (!crs_.isMetric()) {
+            crs_ = gdal::describeCrs("EPSG:" + std::to_string(metricEpsg(gdal::centre(groups_.front().raster))));
+            note(own.name + " is not in metres: warped to " + crs_.name + " (another: --crs)");
+        }
+        info_.crsWkt = crs_.wkt;
+        info_.crsName = crs_.name;
+        info_.verticalDatum = own.verticalDatum;
+    }
+
+    /// The grid of the only group when it fits as it is; else one that covers all, to which each group is warped.
+    void chooseGrid() {
+        std::vector<gdal::Footprint> footprints;
+        for (const RasterGroup& group : groups_) footprints.push_back(gdal::footprint(group.raster, crs_.wkt));
+        const size_t finest = static_cast<size_t>(
+            std::ranges::min_element(footprints, {}, &gdal::Footprint::finestSpacing) - footprints.begin());
+        const std::optional<SquareGrid> own = nativeGrid(groups_[finest]);
+        const double spacing = options_.spacing.value_or(own ? own->spacing : footprints[finest].finestSpacing);
+        const bool keepsOwn = own && std::abs(spacing - own->spacing) <= 1e-6 * spacing;
+        if (keepsOwn && groups_.size() == 1) {
+            stack_.rasters = {groups_.front().raster};
+            setGrid(*own);
+            return;
+        }
+        GroundRect extent = footprints.front().extent;
+        for (const gdal::Footprint& footprint : footprints) extent = unionOf(extent, footprint.extent);
+        const SquareGrid grid = coveringGrid(extent, keepsOwn ? own->spacing : spacing, keepsOwn ? &*own : nullptr);
+        for (const RasterGroup& group : groups_) stack_.rasters.push_back(warped(group, grid));
+        note("heights are resampled (bilinear) to " + metres(grid.spacing) + " in " +
+             (crs_.wkt.empty() ? "the unnamed plane" : crs_.name));
+        info_.sourceStep = 0;
+        setGrid(grid);
+    }
+
+    /// The group's grid when its samples can be taken as they are.
+    std::optional<SquareGrid> nativeGrid(const RasterGroup& group) const {
+        if (!gdal::sameCrs(group.crs, crs_)) return {};
+        return squareGrid(group.transform, group.size);
+    }
+
+    std::string warped(const RasterGroup& group, const SquareGrid& grid) {
+        std::vector<std::string> arguments = gridArguments(grid, crs_.wkt);
+        const RasterFacts& first = rasters_[group.members.front()];
+        const std::optional<double> nodata = options_.nodata ? options_.nodata : first.nodata;
+        const bool isNan = isNorthUp(group.transform) || !nodata;
+        const std::string hidden = isNan ? "nan" : exactText(*nodata);
+        for (const char* argument :
+             {"-r", "bilinear", "-ot", "Float32", "-srcnodata", hidden.c_str(), "-dstnodata", "nan", "-et", "0.125"})
+            arguments.emplace_back(argument);
+        return keep(gdal::warp(group.raster, arguments));
+    }
+
+    void setGrid(const SquareGrid& grid) {
+        info_.size = grid.size;
+        info_.west = grid.west;
+        info_.north = grid.north;
+        info_.spacing = grid.spacing;
+        info_.lonLatBounds = gdal::lonLatBounds(grid.bounds(), crs_.wkt);
+    }
+
+    std::string keep(VirtualRaster raster) {
+        stack_.keptAlive.push_back(std::move(raster));
+        return stack_.keptAlive.back().name();
+    }
+
+    const HeightSourceOptions& options_;
+    std::vector<RasterFacts> rasters_;
+    std::vector<RasterGroup> groups_;
+    Crs crs_;
+    HeightGridInfo info_;
+    HeightStack stack_;
+};
+
+}  // namespace
+
+std::unique_ptr<HeightSource> openGdalHeights(const HeightSourceOptions& options) {
+    return HeightOpener(options).open();
+}
+
+}  // namespace terray

@@ -1,0 +1,465 @@
+#include "preprocess/gdal_raster.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <gdal_utils.h>
+#include <ogr_spatialref.h>
+#include <sys/stat.h>
+
+#include "common/check.h"
+#include "common/error.h"
+#include "preprocess/plain_image.h"
+
+namespace terray::gdal {
+
+namespace {
+
+/// Collects what GDAL says on this thread while it lives, so that nothing reaches the terminal.
+class Messages {
+  public:
+    Messages() { CPLPushErrorHandlerEx(&Messages::take, this); }
+    ~Messages() { CPLPopErrorHandler(); }
+    Messages(const Messages&) = delete;
+    Messages& operator=(const Messages&) = delete;
+
+    [[nodiscard]] bool failed() const { return !failures_.empty(); }
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    /// All that it said, failures first, as half a sentence.
+    [[nodiscard]] std::string text() const {
+        std::string joined;
+        for (const auto* list : {&failures_, &warnings_})
+            for (const std::string& line : *list) joined += (joined.empty() ? "" : "; ") + line;
+        return joined.empty() ? "GDAL gives no reason" : "GDAL says: " + joined;
+    }
+
+  private:
+    static void CPL_STDCALL take(CPLErr kind, CPLErrorNum, const char* message) {
+        auto& self = *static_cast<Messages*>(CPLGetErrorHandlerUserData());
+        auto& list = kind == CE_Failure || kind == CE_Fatal ? self.failures_ : self.warnings_;
+        constexpr size_t kMaxKept = 8;  // a damaged file may say the same for each of a million blocks
+        const bool isNews = std::ranges::find(list, message) == list.end();
+        if (kind >= CE_Warning && isNews && list.size() < kMaxKept) list.emplace_back(message);
+    }
+    std::vector<std::string> failures_;
+    std::vector<std::string> warnings_;
+};
+
+/// Prepares the library once: drivers, silence, and sources of VRTs that threads do not share.
+void initialise() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        CPLSetErrorHandler(CPLQuietErrorHandler);
+        CPLSetConfigOption("VRT_SHARED_SOURCE", "NO");
+        GDALAllRegister();
+    });
+}
+
+[[noreturn]] void refuse(const std::string& message) {
+    throw Error(ExitCode::input, message);
+}
+[[noreturn]] void refusePlace(const std::string& message) {
+    throw Error(ExitCode::georeference, message);
+}
+
+GDALDatasetUniquePtr open(const std::string& name) {
+    return GDALDatasetUniquePtr(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+}
+
+/// As open(); the message of a failure says which of the usual reasons it has.
+GDALDatasetUniquePtr openOrExplain(const std::string& file, const Messages& messages) {
+    VSIStatBufL status;
+    const bool exists = VSIStatL(file.c_str(), &status) == 0;
+    if (exists && VSI_ISREG(status.st_mode) && status.st_size == 0)
+        refuse("cannot read \"" + file + "\": the file is empty (0 bytes)");
+    GDALDatasetUniquePtr dataset = open(file);
+    if (dataset) return dataset;
+    if (exists) refuse("cannot read \"" + file + "\": it is no raster that GDAL can open (" + messages.text() + ")");
+    refuse("cannot read \"" + file + "\": there is no such file");
+}
+
+/// The one grid of a container (netCDF, HDF) that opens without bands of its own.
+GDALDatasetUniquePtr openOnlyGrid(const std::string& file, GDALDataset& container) {
+    const CPLStringList entries(container.GetMetadata("SUBDATASETS"), FALSE);
+    std::vector<std::string> names;
+    std::vector<std::string> grids;
+    for (int i = 1; const char* name = entries.FetchNameValue(CPLSPrintf("SUBDATASET_%d_NAME", i)); ++i) {
+        names.emplace_back(name);
+        const GDALDatasetUniquePtr part = open(names.back());
+        if (part && part->GetRasterCount() == 1 && part->GetRasterXSize() > 1 && part->GetRasterYSize() > 1)
+            grids.push_back(names.back());
+    }
+    if (grids.size() == 1) return open(grids.front());
+    std::string list;
+    for (const std::string& name : names) list += "\n  " + name;
+    if (names.empty()) refuse("cannot read \"" + file + "\": GDAL opens it but finds no raster bands in it");
+    refuse("cannot read \"" + file + "\": it holds several grids. Name one of them instead of the file:" + list);
+}
+
+Crs crsOf(const OGRSpatialReference* reference) {
+    Crs crs;
+    if (reference == nullptr || reference->IsEmpty()) return crs;
+    OGRSpatialReference horizontal(*reference);
+    if (horizontal.IsCompound()) {
+        if (const char* datum = horizontal.GetAttrValue("VERT_CS")) crs.verticalDatum = datum;
+        const char* unit = nullptr;
+        horizontal.GetTargetLinearUnits("VERT_CS", &unit);
+        crs.verticalUnit = unit != nullptr ? unit : "";
+        horizontal.StripVertical();
+    }
+    const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+    char* wkt = nullptr;
+    if (horizontal.exportToWkt(&wkt, options.data()) == OGRERR_NONE) crs.wkt = wkt;
+    CPLFree(wkt);
+    crs.isProjected = horizontal.IsProjected() || horizontal.IsLocal();
+    crs.metresPerUnit = crs.isProjected ? horizontal.GetLinearUnits() : 1;
+    // Only to name it: files often spell out a well-known system without its code.
+    if (horizontal.GetAuthorityCode(nullptr) == nullptr) horizontal.AutoIdentifyEPSG();
+    const char* authority = horizontal.GetAuthorityName(nullptr);
+    const char* code = horizontal.GetAuthorityCode(nullptr);
+    const char* name = horizontal.GetName();
+    crs.name = authority != nullptr && code != nullptr ? std::string(authority) + ":" + code
+               : name != nullptr                       ? name
+                                                       : "";
+    return crs;
+}
+
+/// netCDF files often leave their system unsaid but measure their axes in degrees, which the CF conventions define.
+bool hasDegreeAxes(GDALDataset& dataset) {
+    bool east = false;
+    bool north = false;
+    const CPLStringList items(dataset.GetMetadata(), FALSE);
+    for (int i = 0; i < items.Count(); ++i) {
+        const std::string text(items[i]);
+        const size_t value = text.find("#units=degree");
+        if (value == std::string::npos) continue;
+        east = east || text.find("_e", value) != std::string::npos || text.find("_E", value) != std::string::npos;
+        north = north || text.find("_n", value) != std::string::npos || text.find("_N", value) != std::string::npos;
+    }
+    return east && north;
+}
+
+/// Bands of red, green and blue by their label, else the first three; a grey band three times.
+std::vector<int> colourBandsOf(GDALDataset& dataset) {
+    std::vector<int> bands;
+    for (const GDALColorInterp colour : {GCI_RedBand, GCI_GreenBand, GCI_BlueBand})
+        for (int band = 1; band <= dataset.GetRasterCount(); ++band)
+            if (dataset.GetRasterBand(band)->GetColorInterpretation() == colour) bands.push_back(band);
+    if (bands.size() == 3) return bands;
+    if (dataset.GetRasterCount() >= 3) return {1, 2, 3};
+    return {1, 1, 1};
+}
+
+std::optional<double> nodataOf(GDALRasterBand& band) {
+    int declared = FALSE;
+    const double value = band.GetNoDataValue(&declared);
+    if (declared == FALSE) return {};
+    return value;
+}
+
+std::vector<SourceFile> filesOf(GDALDataset& dataset) {
+    std::vector<SourceFile> files;
+    const CPLStringList list(dataset.GetFileList(), TRUE);
+    for (int i = 0; i < list.Count(); ++i) {
+        struct stat status {};
+        if (stat(list[i], &status) == 0)
+            files.push_back({list[i], static_cast<uint64_t>(status.st_size), static_cast<int64_t>(status.st_mtime)});
+    }
+    return files;
+}
+
+void describeBands(GDALDataset& dataset, RasterFacts& facts) {
+    GDALRasterBand& band = *dataset.GetRasterBand(1);
+    const GDALDataType type = band.GetRasterDataType();
+    const char* usedBits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
+    facts.isInteger = GDALDataTypeIsInteger(type) != 0;
+    facts.bits = usedBits != nullptr ? std::atoi(usedBits) : GDALGetDataTypeSizeBits(type);
+    facts.hasPalette = band.GetColorTable() != nullptr;
+    facts.nodata = nodataOf(band);
+    facts.scale = band.GetScale();
+    facts.offset = band.GetOffset();
+    facts.unit = band.GetUnitType();
+    facts.colourBands = colourBandsOf(dataset);
+    std::array<double, 3> colour{};
+    bool isDeclared = true;
+    for (size_t i = 0; i < 3; ++i) {
+        const std::optional<double> value = nodataOf(*dataset.GetRasterBand(facts.colourBands[i]));
+        isDeclared = isDeclared && value;
+        colour[i] = value.value_or(0);
+    }
+    if (isDeclared) facts.colourNodata = colour;
+}
+
+/// Frees a transformer when it goes out of scope.
+struct DestroyTransformer {
+    void operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
+};
+using Transformer = std::unique_ptr<void, DestroyTransformer>;
+
+/// From a raster's pixels to another system's plane; degrees as longitude, latitude.
+Transformer transformerTo(GDALDataset& dataset, const std::string& crsWkt, const Messages& messages) {
+    CPLStringList options;
+    if (!crsWkt.empty()) options.SetNameValue("DST_SRS", crsWkt.c_str());
+    Transformer transformer(GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&dataset), nullptr, options.List()));
+    if (!transformer) refusePlace(std::string("cannot transform the raster's coordinates: ") + messages.text());
+    return transformer;
+}
+
+struct Point {
+    double x = 0;
+    double y = 0;
+};
+
+Point placeOf(void* transformer, Point pixel) {
+    double z = 0;
+    int succeeded = FALSE;
+    GDALGenImgProjTransform(transformer, FALSE, 1, &pixel.x, &pixel.y, &z, &succeeded);
+    if (succeeded == FALSE || !std::isfinite(pixel.x) || !std::isfinite(pixel.y))
+        refusePlace(
+            "cannot transform the raster's centre: it lies outside the area where the coordinate systems are defined"
+            " (choose another with --crs)");
+    return pixel;
+}
+
+std::string nextVirtualName() {
+    static std::atomic<uint64_t> count{0};
+    return "/vsimem/terray/" + std::to_string(++count) + ".vrt";
+}
+
+CPLStringList argumentsOf(std::vector<std::string> options, const char* format) {
+    CPLStringList list;
+    if (format != nullptr) options.insert(options.begin(), {"-of", format});
+    for (const std::string& option : options) list.AddString(option.c_str());
+    return list;
+}
+
+/// Writes the description of a derived raster, which happens when its handle is closed.
+void finish(GDALDatasetH derived, const std::string& what, const Messages& messages) {
+    const bool made = derived != nullptr;
+    if (made) GDALClose(derived);
+    if (!made || messages.failed()) refuse("cannot prepare " + what + ": " + messages.text());
+}
+
+GDALDatasetUniquePtr openSource(const std::string& name, const Messages& messages) {
+    GDALDatasetUniquePtr source = open(name);
+    if (!source) refuse("cannot open \"" + name + "\" again: " + messages.text());
+    return source;
+}
+
+}  // namespace
+
+void limitCache(uint64_t bytes) {
+    initialise();
+    GDALSetCacheMax64(static_cast<GIntBig>(bytes));
+}
+
+RasterFacts inspect(const std::string& file) {
+    initialise();
+    const Messages messages;
+    GDALDatasetUniquePtr dataset = openOrExplain(file, messages);
+    RasterFacts facts{.name = file};
+    if (dataset->GetRasterCount() == 0) {
+        dataset = openOnlyGrid(file, *dataset);
+        facts.name = dataset->GetDescription();
+    }
+    facts.size = {dataset->GetRasterXSize(), dataset->GetRasterYSize()};
+    if (facts.size.width <= 0 || facts.size.height <= 0) refuse("cannot read \"" + file + "\": it has no pixels");
+    GeoTransform transform{};
+    if (dataset->GetGeoTransform(transform.data()) == CE_None) facts.geoTransform = transform;
+    if (!facts.geoTransform && dataset->GetGCPCount() > 0)
+        refusePlace("cannot place \"" + file +
+                    "\": it has only ground control points. Rectify it first: gdalwarp -t_srs ...");
+    facts.crs = crsOf(dataset->GetSpatialRef());
+    if (facts.crs.wkt.empty() && facts.geoTransform && hasDegreeAxes(*dataset)) facts.crs = describeCrs("EPSG:4326");
+    describeBands(*dataset, facts);
+    facts.files = filesOf(*dataset);
+    facts.warnings = messages.warnings();
+    return facts;
+}
+
+Crs describeCrs(const std::string& text) {
+    initialise();
+    const Messages messages;
+    OGRSpatialReference reference;
+    const std::array<const char*, 3> options{"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+    if (reference.SetFromUserInput(text.c_str(), options.data()) != OGRERR_NONE)
+        refusePlace("unknown coordinate system \"" + text + "\": expected a code such as EPSG:32632, or WKT (" +
+                    messages.text() + ")");
+    return crsOf(&reference);
+}
+
+bool sameCrs(const Crs& a, const Crs& b) {
+    if (a.wkt == b.wkt || a.wkt.empty() || b.wkt.empty()) return a.wkt == b.wkt;
+    const Messages messages;
+    const OGRSpatialReference first(a.wkt.c_str());
+    const OGRSpatialReference second(b.wkt.c_str());
+    return first.IsSame(&second) != 0;
+}
+
+VirtualRaster::VirtualRaster()
+    : name_(new std::string(nextVirtualName()), [](const std::string* name) {
+          VSIUnlink(name->c_str());
+          delete name;
+      }) {}
+
+VirtualRaster translate(const std::string& source, const std::vector<std::string>& options) {
+    const Messages messages;
+    const GDALDatasetUniquePtr input = openSource(source, messages);
+    GDALTranslateOptions* parsed = GDALTranslateOptionsNew(argumentsOf(options, "VRT").List(), nullptr);
+    VirtualRaster result;
+    GDALDatasetH made = GDALTranslate(result.name().c_str(), GDALDataset::ToHandle(input.get()), parsed, nullptr);
+    GDALTranslateOptionsFree(parsed);
+    finish(made, "\"" + source + "\"", messages);
+    return result;
+}
+
+VirtualRaster mosaic(const std::vector<std::string>& sources, const std::vector<std::string>& options) {
+    const Messages messages;
+    CPLStringList names;
+    for (const std::string& source : sources) names.AddString(source.c_str());
+    GDALBuildVRTOptions* parsed = GDALBuildVRTOptionsNew(argumentsOf(options, nullptr).List(), nullptr);
+    VirtualRaster result;
+    GDALDatasetH made = GDALBuildVRT(result.name().c_str(), names.Count(), nullptr, names.List(), parsed, nullptr);
+    GDALBuildVRTOptionsFree(parsed);
+    finish(made, "the mosaic of " + std::to_string(sources.size()) + " rasters", messages);
+    return result;
+}
+
+VirtualRaster warp(const std::string& source, const std::vector<std::string>& options) {
+    const Messages messages;
+    const GDALDatasetUniquePtr input = openSource(source, messages);
+    GDALWarpAppOptions* parsed = GDALWarpAppOptionsNew(argumentsOf(options, "VRT").List(), nullptr);
+    VirtualRaster result;
+    GDALDatasetH handle = GDALDataset::ToHandle(input.get());
+    GDALDatasetH made = GDALWarp(result.name().c_str(), nullptr, 1, &handle, parsed, nullptr);
+    GDALWarpAppOptionsFree(parsed);
+    finish(made, "the resampling of \"" + source + "\"", messages);
+    return result;
+}
+
+Footprint footprint(const std::string& raster, const std::string& crsWkt) {
+    const Messages messages;
+    const GDALDatasetUniquePtr dataset = openSource(raster, messages);
+    const Transformer transformer = transformerTo(*dataset, crsWkt, messages);
+    GeoTransform suggested{};
+    std::array<double, 4> extent{};
+    int width = 0;
+    int height = 0;
+    if (GDALSuggestedWarpOutput2(GDALDataset::ToHandle(dataset.get()), GDALGenImgProjTransform, transformer.get(),
+                                 suggested.data(), &width, &height, extent.data(), 0) != CE_None)
+        refusePlace("cannot place the raster in the chosen coordinate system: " + messages.text());
+    const Point middle{dataset->GetRasterXSize() / 2.0, dataset->GetRasterYSize() / 2.0};
+    const Point here = placeOf(transformer.get(), middle);
+    const Point along = placeOf(transformer.get(), {middle.x + 1, middle.y});
+    const Point down = placeOf(transformer.get(), {middle.x, middle.y + 1});
+    return {.extent = {extent[0], extent[1], extent[2], extent[3]},
+            .finestSpacing =
+                std::min(std::hypot(along.x - here.x, along.y - here.y), std::hypot(down.x - here.x, down.y - here.y))};
+}
+
+LonLat centre(const std::string& raster) {
+    const Messages messages;
+    const GDALDatasetUniquePtr dataset = openSource(raster, messages);
+    const Transformer transformer = transformerTo(*dataset, "EPSG:4326", messages);
+    const Point place = placeOf(transformer.get(), {dataset->GetRasterXSize() / 2.0, dataset->GetRasterYSize() / 2.0});
+    return {.longitude = std::remainder(place.x, 360.0), .latitude = place.y};
+}
+
+std::optional<GroundRect> lonLatBounds(const GroundRect& area, const std::string& crsWkt) {
+    if (crsWkt.empty()) return {};
+    const Messages messages;
+    OGRSpatialReference plane;
+    OGRSpatialReference degrees;
+    if (plane.SetFromUserInput(crsWkt.c_str()) != OGRERR_NONE || degrees.importFromEPSG(4326) != OGRERR_NONE) return {};
+    plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> transformation(
+        OGRCreateCoordinateTransformation(&plane, &degrees));
+    constexpr int kPointsPerSide = 21;
+    GroundRect bounds;
+    if (!transformation || !transformation->TransformBounds(area.west, area.south, area.east, area.north, &bounds.west,
+                                                            &bounds.south, &bounds.east, &bounds.north, kPointsPerSide))
+        return {};
+    return bounds;
+}
+
+struct RasterReader::State {
+    std::string name;
+    std::string label;
+    GDALDatasetUniquePtr dataset;
+
+    GDALDataset& opened(const Messages& messages) {
+        if (!dataset) dataset = open(name);
+        if (!dataset) refuse("cannot read \"" + label + "\": " + messages.text());
+        return *dataset;
+    }
+    /// Some drivers report damage without failing the call, so the messages count as well.
+    void check(CPLErr status, const GridRect& window, const Messages& messages) const {
+        if (status == CE_None && !messages.failed()) return;
+        refuse("cannot read " + std::to_string(window.width) + " x " + std::to_string(window.height) +
+               " pixels at column " + std::to_string(window.x) + ", row " + std::to_string(window.y) + " of \"" +
+               label + "\"; the file is cut short or damaged (" + messages.text() + ")");
+    }
+};
+
+RasterReader::RasterReader(std::string name, std::string label)
+    : state_(std::make_unique<State>(State{.name = std::move(name), .label = std::move(label)})) {}
+RasterReader::~RasterReader() = default;
+RasterReader::RasterReader(RasterReader&&) noexcept = default;
+
+void RasterReader::read(const GridRect& window, GridView<float> out) {
+    TERRAY_CHECK(out.size() == (GridSize{window.width, window.height}));
+    const Messages messages;
+    GDALRasterBand& band = *state_->opened(messages).GetRasterBand(1);
+    const auto x = static_cast<int>(window.x);
+    const auto y = static_cast<int>(window.y);
+    const auto width = static_cast<int>(window.width);
+    const auto height = static_cast<int>(window.height);
+    const GSpacing lineBytes = out.stride() * static_cast<GSpacing>(sizeof(float));
+    state_->check(band.RasterIO(GF_Read, x, y, width, height, out.data(), width, height, GDT_Float32, sizeof(float),
+                                lineBytes, nullptr),
+                  window, messages);
+    if ((band.GetMaskFlags() & GMF_PER_DATASET) == 0) return;  // NaN stands for nodata already
+    Grid<uint8_t> mask(out.size());
+    state_->check(band.GetMaskBand()->RasterIO(GF_Read, x, y, width, height, mask.view().data(), width, height,
+                                               GDT_Byte, 1, mask.width(), nullptr),
+                  window, messages);
+    for (int64_t row = 0; row < out.height(); ++row)
+        for (int64_t column = 0; column < out.width(); ++column)
+            if (mask.at(column, row) == 0) out.at(column, row) = kNoHeight;
+}
+
+void RasterReader::read(const GridRect& window, GridView<Rgba> out) {
+    TERRAY_CHECK(out.size() == (GridSize{window.width, window.height}));
+    const Messages messages;
+    GDALDataset& dataset = state_->opened(messages);
+    const auto width = static_cast<int>(window.width);
+    const auto height = static_cast<int>(window.height);
+    const GSpacing lineBytes = out.stride() * static_cast<GSpacing>(sizeof(Rgba));
+    state_->check(
+        dataset.RasterIO(GF_Read, static_cast<int>(window.x), static_cast<int>(window.y), width, height, out.data(),
+                         width, height, GDT_Byte, 4, nullptr, sizeof(Rgba), lineBytes, 1, nullptr),
+        window, messages);
+}
+
+}  // namespace terray::gdal
+
+bool terray::hasGeoreference(const std::string& file) {
+    gdal::initialise();
+    const gdal::Messages messages;
+    const GDALDatasetUniquePtr dataset = gdal::open(file);
+    if (!dataset) return false;
+    GeoTransform transform{};
+    return dataset->GetRasterCount() == 0 || dataset->GetGeoTransform(transform.data()) == CE_None ||
+           dataset->GetGCPCount() > 0;
+}

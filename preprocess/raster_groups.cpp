@@ -1,0 +1,71 @@
+#include "preprocess/raster_groups.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "common/check.h"
+
+namespace terray {
+
+namespace {
+
+bool fits(const RasterGroup& group, const gdal::RasterFacts& raster) {
+    return isNorthUp(group.transform) && isNorthUp(*raster.geoTransform) &&
+           shareGrid(group.transform, *raster.geoTransform) && gdal::sameCrs(group.crs, raster.crs);
+}
+
+void add(RasterGroup& group, size_t index, const gdal::RasterFacts& raster) {
+    const GeoTransform& own = *raster.geoTransform;
+    GeoTransform& all = group.transform;
+    const double east = std::max(all[0] + static_cast<double>(group.size.width) * all[1],
+                                 own[0] + static_cast<double>(raster.size.width) * own[1]);
+    const double south = std::min(all[3] + static_cast<double>(group.size.height) * all[5],
+                                  own[3] + static_cast<double>(raster.size.height) * own[5]);
+    all[0] = std::min(all[0], own[0]);
+    all[3] = std::max(all[3], own[3]);
+    group.size = {std::llround((east - all[0]) / all[1]), std::llround((south - all[3]) / all[5])};
+    group.members.push_back(index);
+}
+
+}  // namespace
+
+std::vector<RasterGroup> groupByGrid(const std::vector<gdal::RasterFacts>& rasters) {
+    std::vector<RasterGroup> groups;
+    for (size_t i = 0; i < rasters.size(); ++i) {
+        const gdal::RasterFacts& raster = rasters[i];
+        TERRAY_CHECK(raster.geoTransform.has_value());
+        if (!groups.empty() && fits(groups.back(), raster))
+            add(groups.back(), i, raster);
+        else
+            groups.push_back(
+                {.members = {i}, .crs = raster.crs, .transform = *raster.geoTransform, .size = raster.size});
+    }
+    return groups;
+}
+
+std::string exactText(double value) {
+    if (std::isnan(value)) return "nan";
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), "%.17g", value);
+    return text.data();
+}
+
+std::vector<std::string> gridArguments(const SquareGrid& grid, const std::string& crsWkt) {
+    const GroundRect area = grid.bounds();
+    std::vector<std::string> arguments{"-te",
+                                       exactText(area.west),
+                                       exactText(area.south),
+                                       exactText(area.east),
+                                       exactText(area.north),
+                                       "-ts",
+                                       std::to_string(grid.size.width),
+                                       std::to_string(grid.size.height),
+                                       "-ovr",
+                                       "NONE"};
+    if (!crsWkt.empty()) arguments.insert(arguments.end(), {"-t_srs", crsWkt});
+    return arguments;
+}
+
+}  // namespace terray

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "preprocess/gdal_raster.h"
+#include "preprocess/raster_layout.h"
+
+// How several files become few rasters, for heights and photos alike.
+
+namespace terray {
+
+/// Files that lie on one grid of one system, so that they can be laid side by side before anything is resampled: then
+/// no seam is left where one ends and the next begins.
+struct RasterGroup {
+    std::vector<size_t> members;  ///< indices of the files, in the order given
+    Crs crs;
+    GeoTransform transform{};  ///< of the smallest grid that holds all members
+    GridSize size;
+    std::string raster;  ///< name of the members laid side by side, once that is done
+};
+
+/// Groups consecutive files (consecutive only, since later files cover earlier ones). Each must have its geoTransform.
+[[nodiscard]] std::vector<RasterGroup> groupByGrid(const std::vector<gdal::RasterFacts>& rasters);
+
+/// A number as text that reads back as the same number.
+[[nodiscard]] std::string exactText(double value);
+
+/// gdalwarp's options for an exact target: system, outline, columns and rows. Reads no overviews, whose samples are
+/// other people's averages.
+[[nodiscard]] std::vector<std::string> gridArguments(const SquareGrid& grid, const std::string& crsWkt);
+
+}  // namespace terray

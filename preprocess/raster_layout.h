@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/grid.h"
+#include "common/tiling.h"
+
+// Where rasters lie and on which grid to read them: decisions that need no raster library.
+
+namespace terray {
+
+/// Ground from pixel: x = t[0] + column t[1] + row t[2], y = t[3] + column t[4] + row t[5], pixel corners being whole
+/// numbers.
+using GeoTransform = std::array<double, 6>;
+
+/// A coordinate system, as far as choosing a grid needs it.
+struct Crs {
+    std::string wkt;   ///< WKT2 of the horizontal part; empty: an unnamed plane in metres
+    std::string name;  ///< "EPSG:32613", or the system's own name
+    std::string verticalDatum = "unknown";
+    std::string verticalUnit;  ///< of a compound system, as it names it
+    bool isProjected = false;  ///< a plane: neither degrees nor geocentric
+    double metresPerUnit = 1;  ///< of a plane's coordinates
+
+    /// Whether a dataset can lie in it: a plane measured in metres.
+    [[nodiscard]] bool isMetric() const { return wkt.empty() || (isProjected && metresPerUnit == 1); }
+};
+
+/// Square cells, the upper-left corner of the first at (west, north).
+struct SquareGrid {
+    double west = 0;     ///< metres
+    double north = 0;    ///< metres
+    double spacing = 1;  ///< metres, > 0
+    GridSize size;
+
+    [[nodiscard]] GroundRect bounds() const;
+};
+
+/// The grid of a north-up raster with square cells, sides equal to 1 part in 10^6 (a drift of a tenth of a cell over
+/// 100,000); none for others, which must be warped.
+[[nodiscard]] std::optional<SquareGrid> squareGrid(const GeoTransform& transform, GridSize size);
+
+/// Whether rows run to the east and columns to the south, so that rasters can be laid side by side without resampling.
+[[nodiscard]] bool isNorthUp(const GeoTransform& transform);
+
+/// Whether samples of both are samples of one common grid: same cell sides (1 part in 10^6), and corners a whole number
+/// of cells apart to a hundredth of a cell. Both must be north-up.
+[[nodiscard]] bool shareGrid(const GeoTransform& a, const GeoTransform& b);
+
+/// The least grid that covers `extent`; its lines go through the anchor's when there is one, else through the extent's
+/// upper-left corner. Overhangs below a millionth of a cell count as rounding and add no cell.
+[[nodiscard]] SquareGrid coveringGrid(const GroundRect& extent, double spacing, const SquareGrid* anchor);
+
+/// The area that holds both.
+[[nodiscard]] GroundRect unionOf(const GroundRect& a, const GroundRect& b);
+/// The area common to both, if there is any.
+[[nodiscard]] std::optional<GroundRect> overlapOf(const GroundRect& a, const GroundRect& b);
+
+/// The level of `tiling` at which a photo of this resolution (metres) is kept: the coarsest whose texels are at
+/// most 1.2 times the photo's, 0 at the least.
+[[nodiscard]] uint32_t imageryLevelFor(double photoSpacing, const Tiling& tiling);
+/// Cells of an imagery level, anchored at the root square's corner, that touch `area`.
+[[nodiscard]] GridRect imageryCells(const GroundRect& area, const Tiling& tiling, uint32_t level);
+
+/// Metres in a unit of height as files write it ("m", "feet", "us-ft", "km"); none for an unknown or empty one.
+[[nodiscard]] std::optional<double> metresPerHeightUnit(std::string unit);
+
+/// "W 557805, S 5107995, E 567615, N 5122035 (metres, EPSG:26710)", for messages.
+[[nodiscard]] std::string describe(const GroundRect& extent, const std::string& crsName);
+
+}  // namespace terray

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/dataset_metadata.h"
+#include "common/grid.h"
+#include "common/tiling.h"
+
+namespace terray {
+
+/// What a height sample holds where there is no surface.
+inline constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
+
+/// Where a grid of heights lies. Cells are squares; the first one's upper-left corner is (west, north).
+struct HeightGridInfo {
+    GridSize size;              ///< samples of the finest level, both > 0
+    double west = 0;            ///< metres in the dataset's coordinate system
+    double north = 0;
+    double spacing = 1;         ///< metres, > 0
+    std::string crsWkt;         ///< WKT2; empty for a plain image
+    std::string crsName;        ///< "EPSG:32613", or the system's name
+    std::optional<GroundRect> lonLatBounds;  ///< degrees
+    std::string verticalDatum = "unknown";
+    /// Greatest step, metres, between which values of the source can lie: 1 for integers in metres, 0 when unknown (floats).
+    double sourceStep = 0;
+    std::vector<SourceFile> files;
+};
+
+/// Reads windows of one grid. One reader serves one thread.
+class HeightReader {
+  public:
+    virtual ~HeightReader() = default;
+    /// Heights in metres for `window` of the finest grid, which may reach beyond the grid: kNoHeight there and where the
+    /// source has no data. `out` has the window's size. Throws Error(input) when the source cannot be read.
+    virtual void read(const GridRect& window, GridView<float> out) = 0;
+};
+
+/// A source of heights of any size: GDAL rasters, plain images, or a procedure. Thread-safe.
+class HeightSource {
+  public:
+    virtual ~HeightSource() = default;
+    [[nodiscard]] virtual const HeightGridInfo& info() const = 0;
+    [[nodiscard]] virtual std::unique_ptr<HeightReader> openReader() const = 0;
+};
+
+/// 8-bit sRGB and coverage: alpha 255 where the photo has data, else 0.
+using Rgba = std::array<uint8_t, 4>;
+
+/// Reads windows of a photo, resampled to the imagery grid: cells of Tiling::spacing(level()), anchored at the root
+/// square's upper-left corner. One reader serves one thread.
+class ColourReader {
+  public:
+    virtual ~ColourReader() = default;
+    virtual void read(const GridRect& window, GridView<Rgba> out) = 0;
+};
+
+class ColourSource {
+  public:
+    virtual ~ColourSource() = default;
+    /// Finest imagery level: that of the ladder's spacings nearest to the photo's own resolution, never coarser than
+    /// 1.2 times it.
+    [[nodiscard]] virtual uint32_t level() const = 0;
+    /// The ground that the photo covers within the dataset.
+    [[nodiscard]] virtual GroundRect bounds() const = 0;
+    [[nodiscard]] virtual const std::vector<SourceFile>& files() const = 0;
+    [[nodiscard]] virtual std::unique_ptr<ColourReader> openReader() const = 0;
+};
+
+/// How a user asked for heights to be read; every field as the option of `terray-preprocess build` of that name.
+struct HeightSourceOptions {
+    std::vector<std::string> files;
+    std::string crs;                   ///< "EPSG:2056" and the like; empty: the source's, or a metric one chosen
+    std::optional<double> spacing;     ///< metres; needed for plain images
+    double heightScale = 1;            ///< metres per unit of the source
+    double heightOffset = 0;           ///< metres, added after scaling
+    std::optional<double> nodata;      ///< in the source's unit, instead of what the file says
+    uint64_t cacheBytes = 256u << 20;  ///< for the reading library's own cache
+    std::function<void(const std::string&)> note;  ///< told what was decided, such as the chosen system
+};
+
+}  // namespace terray

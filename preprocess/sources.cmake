@@ -1,0 +1,31 @@
+# Where heights and photos come from, and the encoder of photos. Each of GDAL, OpenImageIO and stb has its own library here;
+# built without it, that library answers with Error(unsupported).
+
+# What needs no foreign library: choice of grids and levels, the procedural terrain, the decoder, the answers of the missing.
+add_library(terray_raster_base STATIC
+    bc1_decode.cpp missing_libraries.cpp raster_layout.cpp synthetic.cpp synthetic_terrain.cpp)
+target_link_libraries(terray_raster_base PUBLIC terray_common)
+
+if(TERRAY_WITH_GDAL)
+    add_library(terray_raster_gdal STATIC gdal_heights.cpp gdal_photos.cpp gdal_raster.cpp raster_groups.cpp)
+    target_link_libraries(terray_raster_gdal PUBLIC terray_raster_base PRIVATE terray::gdal)
+else()
+    add_library(terray_raster_gdal INTERFACE)
+    target_link_libraries(terray_raster_gdal INTERFACE terray_raster_base)
+endif()
+
+# isPlainImage() asks both raster libraries.
+add_library(terray_raster_oiio STATIC plain_image.cpp)
+target_link_libraries(terray_raster_oiio PUBLIC terray_raster_base terray_raster_gdal)
+if(TERRAY_WITH_OIIO)
+    target_sources(terray_raster_oiio PRIVATE image_source.cpp)
+    target_link_libraries(terray_raster_oiio PRIVATE terray::openimageio)
+endif()
+
+if(TERRAY_WITH_STB)
+    add_library(terray_bc1 STATIC bc1.cpp)
+    target_link_libraries(terray_bc1 PUBLIC terray_raster_base PRIVATE terray::stb)
+else()
+    add_library(terray_bc1 INTERFACE)
+    target_link_libraries(terray_bc1 INTERFACE terray_raster_base)
+endif()
