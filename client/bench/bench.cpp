@@ -1,0 +1,30 @@
+#include "client/bench/bench.h"
+
+#include <cstdio>
+
+namespace terray {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: terray-bench COMMAND ...\n"
+    "  tour DATASET --out FLIGHT.json      writes the dataset's standard flight\n"
+    "  replay DATASET --flight FLIGHT.json --out DIR\n"
+    "                                      flies it at a fixed rate and writes what each frame cost\n"
+    "Each command tells its options with --help; terray-bench --version says what was built.\n";
+
+}  // namespace
+
+ExitCode runBench(const std::vector<std::string>& arguments) {
+    const std::string command = arguments.empty() ? "" : arguments.front();
+    if (command == "--help") {
+        std::fputs(kUsage, stdout);
+        return ExitCode::ok;
+    }
+    const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
+    if (command == "tour") return runTour(rest);
+    if (command == "replay") return runReplay(rest);
+    const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
+    throw Error(ExitCode::usage, found + ", expected tour or replay (--help tells more)");
+}
+
+}  // namespace terray

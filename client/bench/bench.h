@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/error.h"
+
+namespace terray {
+
+/// The program terray-bench without its name: the first argument is the sub-command. Throws Error as README's table of
+/// exit codes says. Needs no current GL context: replay makes its own.
+ExitCode runBench(const std::vector<std::string>& arguments);
+
+/// `terray-bench tour`: writes the dataset's standard flight.
+ExitCode runTour(const std::vector<std::string>& arguments);
+
+/// `terray-bench replay`: flies a flight frame by frame at a fixed rate and writes what each frame cost. The files are
+/// documented in client/README.md, "Replay output".
+ExitCode runReplay(const std::vector<std::string>& arguments);
+
+}  // namespace terray

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "client/render/gl_context.h"
+#include "common/json.h"
+
+namespace terray {
+
+/// Version, commit, whether tracked files differed from it, compiler and kind of build.
+[[nodiscard]] Json describeBuild();
+/// Processor, cores, main memory and kernel, as Linux tells them; null where it does not.
+[[nodiscard]] Json describeMachine();
+[[nodiscard]] Json describeGraphics(const GlStrings& strings);
+/// A file's path and CRC-32C. Throws Error(input) when it cannot be read.
+[[nodiscard]] Json describeFile(const std::filesystem::path& path);
+/// Now, "2026-01-31T12:00:00Z".
+[[nodiscard]] std::string utcNow();
+/// The most main memory that this process has held so far, bytes.
+[[nodiscard]] uint64_t peakResidentBytes();
+
+/// Writes a JSON file whole or not at all. Throws Error(output) when it cannot be written.
+void writeJson(const std::filesystem::path& path, const Json& json);
+
+}  // namespace terray

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+namespace terray {
+
+/// A line on stderr that says how far a run is and how long it will still take; nothing when stderr is no terminal. The
+/// line is erased when the bar goes out of scope.
+class ProgressBar {
+  public:
+    explicit ProgressBar(size_t frames);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// So many frames are done. Draws at most ten times a second.
+    void show(size_t done);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    size_t frames_;
+    bool onTerminal_;
+    Clock::time_point start_;
+    Clock::time_point lastShown_;
+};
+
+}  // namespace terray

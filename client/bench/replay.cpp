@@ -1,0 +1,213 @@
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "client/bench/bench.h"
+#include "client/bench/frame_table.h"
+#include "client/bench/manifest.h"
+#include "client/bench/progress_bar.h"
+#include "client/bench/run_directory.h"
+#include "client/engine/engine.h"
+#include "client/engine/engine_options.h"
+#include "client/engine/program.h"
+#include "client/stream/flight.h"
+#include "common/command_line.h"
+#if TERRAY_WITH_OUTPUT
+#include "client/output/picture.h"
+#endif
+
+namespace terray {
+namespace {
+
+struct ReplayOptions {
+    std::string dataset;
+    std::string flight;
+    std::string out;
+    int width = 1280;
+    int height = 720;
+    double framesPerSecond = 30;
+    int64_t warmUpFrames = 3;
+    bool pictures = false;
+    bool waitForTiles = false;
+    bool noStatistics = false;
+    bool force = false;
+    EngineCommandLine engine;
+};
+
+bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
+    CommandLine line("terray-bench replay",
+                     "Flies a flight frame by frame at a fixed rate and writes what each frame cost.");
+    line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
+    line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
+    line.option("--out", options.out, "DIR", "for frames.csv, summary.json, manifest.json and frames/").required();
+    line.size("--size", options.width, options.height, "of a frame in pixels (1280x720)");
+    line.option("--fps", options.framesPerSecond, "N", "frames to a second of the flight (30)");
+    line.flag("--frames", options.pictures, "write each frame as PNG, outside of the times");
+    line.flag("--wait-for-tiles", options.waitForTiles,
+              "each frame waits until all of its tiles are loaded: the same pictures on every machine");
+    line.option("--warm-up", options.warmUpFrames, "N", "draw the first frame so often before the flight (3)");
+    line.flag("--no-statistics", options.noStatistics, "count no rays and steps: their columns stay empty");
+    line.flag("--force", options.force, "replace an earlier run in DIR");
+    options.engine.declare(line);
+    if (!line.parse(arguments)) return false;
+    if (!(options.framesPerSecond > 0 && options.framesPerSecond <= 10000))
+        throw Error(ExitCode::usage, "--fps: expected a number above 0, at most 10000");
+    if (options.warmUpFrames < 0 || options.warmUpFrames > 10000)
+        throw Error(ExitCode::usage, "--warm-up: expected 0 to 10000 frames");
+    if (options.pictures && !TERRAY_WITH_OUTPUT)
+        throw Error(ExitCode::unsupported, "--frames: this build writes no pictures (TERRAY_WITH_OUTPUT is off)");
+    return true;
+}
+
+EngineOptions engineOptions(const ReplayOptions& options, const DatasetMetadata& metadata) {
+    EngineOptions engine = options.engine.options(metadata.imageryLevel.has_value());
+    engine.features.statistics = !options.noStatistics;
+    return engine;
+}
+
+/// Frame n is at n / rate: the last one is the last that does not lie beyond the flight's end.
+size_t frameCount(const Flight& flight, double framesPerSecond) {
+    constexpr double kSlack = 1e-6;  // of a frame: a flight of 10 s at 30 a second has its frame 300
+    return static_cast<size_t>(std::floor(flight.seconds() * framesPerSecond + kSlack)) + 1;
+}
+
+void refuseFailures(const FrameReport& report) {
+    if (!report.failures.empty())
+        throw Error(ExitCode::dataset, "the flight was broken off: " + report.failures.front() +
+                                           " (terray-preprocess verify lists all damaged tiles)");
+}
+
+/// One flight over one dataset, from the first warm-up frame to the last line of the table.
+class Replay {
+  public:
+    Replay(const ReplayOptions& options, const TileSource& source, const Flight& flight, RunDirectory& directory)
+        : options_(options),
+          flight_(flight),
+          directory_(directory),
+          shaders_(options.engine.shaders()),
+          engine_(source, shaders_, engineOptions(options, source.metadata()), options.width, options.height),
+          table_(directory.table()),
+          frames_(frameCount(flight, options.framesPerSecond)) {}
+
+    void run() {
+        warmUp();
+        const auto start = std::chrono::steady_clock::now();
+        ProgressBar progress(frames_);
+        for (size_t index = 0; index < frames_; ++index) {
+            fly(index);
+            progress.show(index + 1);
+        }
+        wallSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    FrameTable& table() { return table_; }
+
+    [[nodiscard]] Json summary() const {
+        return Json::Object{{"frames", uint64_t{frames_}},
+                            {"wallSeconds", wallSeconds_},
+                            {"peakResidentBytes", peakResidentBytes()},
+                            {"warmUp", Json::Object{{"frames", options_.warmUpFrames},
+                                                    {"readBytes", pagerAtStart_.bytesRead},
+                                                    {"requested", pagerAtStart_.requested}}},
+                            {"columns", table_.summary()}};
+    }
+
+  private:
+    FrameReport draw(double seconds) {
+        throwIfInterrupted();
+        FrameReport report = engine_.drawFrame(flight_.at(seconds), options_.waitForTiles);
+        refuseFailures(report);
+        return report;
+    }
+
+    void warmUp() {
+        for (int64_t n = 0; n < options_.warmUpFrames; ++n) pagerAtStart_ = draw(0).pager;
+        pagerBefore_ = pagerAtStart_;
+    }
+
+    void fly(size_t index) {
+        const double seconds = static_cast<double>(index) / options_.framesPerSecond;
+        FrameMeasurement frame{.index = index, .seconds = seconds, .camera = flight_.at(seconds)};
+        frame.report = draw(seconds);
+        frame.pagerBefore = pagerBefore_;
+        pagerBefore_ = frame.report.pager;
+        // From here on nothing is timed: reading back stalls the GPU.
+        const FrameTargets& targets = engine_.targets();
+        if (!options_.noStatistics) frame.rays = measureRays(targets.readSteps(), targets.readNodes());
+#if TERRAY_WITH_OUTPUT
+        if (options_.pictures) writePng(directory_.frame(index), targets.readSrgb().view());
+#endif
+        table_.add(frame);
+    }
+
+    const ReplayOptions& options_;
+    const Flight& flight_;
+    RunDirectory& directory_;
+    ShaderLibrary shaders_;
+    Engine engine_;
+    FrameTable table_;
+    size_t frames_;
+    PagerStatistics pagerAtStart_;
+    PagerStatistics pagerBefore_;
+    double wallSeconds_ = 0;
+};
+
+Json describeRun(const ReplayOptions& options, const TileSource& source, const Flight& flight,
+                 const GlStrings& graphics, const std::string& started) {
+    Json flightFile = describeFile(options.flight);
+    flightFile.set("name", flight.name);
+    flightFile.set("seconds", flight.seconds());
+    return Json::Object{{"program", "terray-bench replay"},
+                        {"build", describeBuild()},
+                        {"machine", describeMachine()},
+                        {"graphics", describeGraphics(graphics)},
+                        {"dataset", Json::Object{{"path", options.dataset}, {"contentHash", source.contentHash()}}},
+                        {"flight", std::move(flightFile)},
+                        {"protocol", Json::Object{{"width", options.width},
+                                                  {"height", options.height},
+                                                  {"fps", options.framesPerSecond},
+                                                  {"waitForTiles", options.waitForTiles},
+                                                  {"warmUpFrames", options.warmUpFrames},
+                                                  {"statistics", !options.noStatistics},
+                                                  {"pictures", options.pictures}}},
+                        {"options", options.engine.toJson()},
+                        {"started", started}};
+}
+
+void printResult(const Replay& replay, FrameTable& table, const RunDirectory& directory, bool statistics) {
+    const double frames = replay.summary().numberAt("frames").value();
+    std::printf("%.0f frames: median %.1f ms (processor %.1f, graphics %.1f), %.0f nodes\n", frames,
+                table.median("frame_ms"), table.median("cpu_ms"), table.median("gpu_ms"), table.median("nodes"));
+    if (statistics)
+        std::printf("steps a ray: mean %.1f, at most %.0f; rays out of steps: %.0f\n", table.median("steps_mean"),
+                    table.max("steps_max"), table.sum("rays_out_of_steps"));
+    std::printf("written: %s, %s, %s\n", directory.table().c_str(), directory.summary().c_str(),
+                directory.manifest().c_str());
+}
+
+}  // namespace
+
+ExitCode runReplay(const std::vector<std::string>& arguments) {
+    ReplayOptions options;
+    if (!parse(options, arguments)) return ExitCode::ok;
+    const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
+    const Flight flight = loadFlight(options.flight);
+    engineOptions(options, source->metadata());  // refuses what is out of range before anything is created
+
+    catchInterrupts();
+    RunDirectory directory(options.out, options.pictures, options.force);
+    const HeadlessContext context;
+    requireRendererFeatures();
+    const Json manifest = describeRun(options, *source, flight, context.strings(), utcNow());
+    Replay replay(options, *source, flight, directory);
+    replay.run();
+    replay.table().finish();
+    writeJson(directory.summary(), replay.summary());
+    writeJson(directory.manifest(), manifest);
+    printResult(replay, replay.table(), directory, !options.noStatistics);
+    return ExitCode::ok;
+}
+
+}  // namespace terray

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+namespace terray {
+
+/// The directory that a replay writes into: frames.csv, summary.json, manifest.json and frames/frame_00000.png, ...
+class RunDirectory {
+  public:
+    /// Creates the directory, unless it exists. Throws Error(output) when that fails, or when an earlier run lies in it
+    /// and `force` is not set; with `force` the files of that run, and only those, are removed.
+    RunDirectory(std::filesystem::path path, bool withFrames, bool force);
+    /// Removes the directories again that were made and stayed empty.
+    ~RunDirectory();
+    RunDirectory(const RunDirectory&) = delete;
+    RunDirectory& operator=(const RunDirectory&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] std::filesystem::path table() const;
+    [[nodiscard]] std::filesystem::path summary() const;
+    [[nodiscard]] std::filesystem::path manifest() const;
+    [[nodiscard]] std::filesystem::path frames() const;
+    /// Of a frame's picture, numbered with at least five digits.
+    [[nodiscard]] std::filesystem::path frame(size_t index) const;
+
+  private:
+    void removeEarlierRun() const;
+
+    std::filesystem::path path_;
+    bool existed_;
+};
+
+}  // namespace terray

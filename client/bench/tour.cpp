@@ -1,0 +1,37 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "client/bench/bench.h"
+#include "client/engine/dataset_camera.h"
+#include "client/stream/flight.h"
+#include "common/command_line.h"
+
+namespace terray {
+
+ExitCode runTour(const std::vector<std::string>& arguments) {
+    constexpr double kMostSeconds = 86400;
+    std::string dataset;
+    std::string out;
+    double seconds = 30;
+    bool force = false;
+    CommandLine line("terray-bench tour", "Writes a standard flight made from the dataset's extent and heights.");
+    line.positional("DATASET", dataset, "directory made by terray-preprocess").required();
+    line.option("--out", out, "FLIGHT.json", "where the flight goes").required();
+    line.option("--seconds", seconds, "S", "how long it takes (30)");
+    line.flag("--force", force, "replace an existing flight");
+    if (!line.parse(arguments)) return ExitCode::ok;
+    if (!(seconds >= 1 && seconds <= kMostSeconds))
+        throw Error(ExitCode::usage, "--seconds: found " + Json(seconds).dump() + ", expected 1 to 86400");
+    if (std::filesystem::exists(out) && !force)
+        throw Error(ExitCode::output, out + " exists (give --force to replace it)");
+
+    const std::unique_ptr<TileSource> source = openLocalDataset(dataset);
+    const std::optional<Projection> projection = projectionOf(source->metadata());
+    const Flight flight = standardTour(*source, seconds);
+    saveFlight(flight, out, projection ? &*projection : nullptr);
+    std::printf("%s: %zu keys, %.1f seconds\n", out.c_str(), flight.keys.size(), flight.seconds());
+    return ExitCode::ok;
+}
+
+}  // namespace terray

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "client/stream/camera.h"
+#include "common/dataset_metadata.h"
+#include "common/projection.h"
+
+namespace terray {
+
+/// The projection of a dataset; none for a plain image without a coordinate system, and none in a build without PROJ:
+/// cameras are then given in the dataset's own x and y. Throws Error(georeference) when PROJ cannot use the dataset's
+/// coordinate system.
+[[nodiscard]] std::optional<Projection> projectionOf(const DatasetMetadata& metadata);
+
+/// A camera that has the whole dataset in its picture: from the south, looking north and 40 degrees down, far enough
+/// away for the sphere around ground and heights to fit into the narrower field of view.
+/// @param aspect  width of the picture by its height
+[[nodiscard]] Camera overviewCamera(const DatasetMetadata& metadata, double aspect);
+
+}  // namespace terray

@@ -1,0 +1,233 @@
+#include "client/engine/engine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <limits>
+#include <unordered_set>
+#include <utility>
+
+#include "client/engine/resident_tiles.h"
+
+namespace terray {
+namespace {
+
+/// Tiles that are asked for at a time, and that may wait for upload: about 34 MB of heights. More than a frame uploads
+/// by default, so reader and decoders stay busy; few enough that refinement follows the most urgent tiles and that
+/// tiles which have arrived take little memory.
+constexpr size_t kMaxPendingTiles = 64;
+constexpr uint64_t kUnlimited = std::numeric_limits<uint64_t>::max();
+
+using KeySet = std::unordered_set<TileKey, TileKeyHash>;
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+bool usesImagery(const TileSource& source, const EngineOptions& options) {
+    return options.selection.useImagery && source.metadata().imageryLevel.has_value();
+}
+
+/// The options as this dataset lets them be: imagery is on only when there is some.
+EngineOptions settled(EngineOptions options, const TileSource& source) {
+    options.features.imagery = options.selection.useImagery = usesImagery(source, options);
+    return options;
+}
+
+GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& options) {
+    const bool imagery = usesImagery(source, options);
+    return {.heightBudgetBytes = options.gpuHeightBytes,
+            .imageryBudgetBytes = imagery ? options.gpuImageryBytes : 0,
+            .heightTiles = source.metadata().heightTiles,
+            .imageryTiles = imagery ? source.metadata().imageryTiles : 0};
+}
+
+}  // namespace
+
+struct Engine::State {
+    State(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& given, int width, int height)
+        : options(settled(given, source)),
+          resident(source, shaders, slotOptions(source, options), options.features.imagery),
+          renderer(shaders, source.metadata().tiling),
+          targets(width, height, options.features, options.colour),
+          pager(source, options.pager) {}
+
+    /// Selects for the current view from what is resident, and protects what is drawn from eviction.
+    void selectAndPin();
+    /// Takes what the pager has: tiles to be uploaded, and failures to be told.
+    void takeArrivals(size_t maxTiles);
+    /// The wanted tiles that can still be had: not failed, and of a layer that has slots left for them.
+    [[nodiscard]] std::vector<TileRequest> attainable() const;
+    /// Those of them that have not arrived.
+    [[nodiscard]] std::vector<TileRequest> notPending(const std::vector<TileRequest>& requests) const;
+    std::vector<TileKey> upload(const std::vector<TileRequest>& order, uint64_t budgetBytes);
+    /// One frame's share of paging: what has arrived is uploaded within the budget, what is lacking is asked for.
+    void stream();
+    /// Pages until the selection lacks nothing that can be had.
+    void waitForTiles();
+    void waitForArrivals(const std::vector<TileRequest>& requests);
+    void render();
+    void fillReport();
+
+    EngineOptions options;
+    ResidentTiles resident;
+    TerrainRenderer renderer;
+    FrameTargets targets;
+    GpuTimer timer;
+    KeySet failed;
+    View view;
+    Selection selection;
+    FrameReport report;
+    Pager pager;  // last: its threads end first
+};
+
+void Engine::State::selectAndPin() {
+    selection = select(resident.tree(), view, options.selection);
+    resident.pin(selection);
+}
+
+void Engine::State::takeArrivals(size_t maxTiles) {
+    for (LoadedTile& tile : pager.takeLoaded(maxTiles)) resident.accept(std::move(tile));
+    for (FailedTile& tile : pager.takeFailed()) {
+        failed.insert({tile.layer, tile.id});
+        report.failures.push_back(std::move(tile.message));
+    }
+}
+
+std::vector<TileRequest> Engine::State::attainable() const {
+    const bool heightsFull = resident.full(TileLayer::heights);
+    const bool imageryFull = options.features.imagery && resident.full(TileLayer::imagery);
+    std::vector<TileRequest> requests;
+    for (const TileRequest& request : selection.wanted) {
+        const bool full = request.layer == TileLayer::heights ? heightsFull : imageryFull;
+        if (!full && !failed.contains(keyOf(request))) requests.push_back(request);
+    }
+    return requests;
+}
+
+std::vector<TileRequest> Engine::State::notPending(const std::vector<TileRequest>& requests) const {
+    std::vector<TileRequest> missing;
+    std::copy_if(requests.begin(), requests.end(), std::back_inserter(missing),
+                 [&](const TileRequest& request) { return !resident.isPending(keyOf(request)); });
+    return missing;
+}
+
+std::vector<TileKey> Engine::State::upload(const std::vector<TileRequest>& order, uint64_t budgetBytes) {
+    std::vector<TileKey> uploaded;
+    const Uploads done = resident.upload(order, budgetBytes, &uploaded);
+    report.uploadedTiles += done.tiles;
+    report.uploadedBytes += done.bytes;
+    return uploaded;
+}
+
+void Engine::State::stream() {
+    takeArrivals(kMaxPendingTiles - std::min(kMaxPendingTiles, resident.pendingTiles()));
+    resident.beginFrame();
+    selectAndPin();
+    const std::vector<TileRequest> order = attainable();
+    resident.keepOnly(order);
+    if (!upload(order, options.uploadBytesPerFrame).empty()) selectAndPin();
+    std::vector<TileRequest> missing = notPending(attainable());
+    if (missing.size() > kMaxPendingTiles) missing.resize(kMaxPendingTiles);
+    pager.want(missing);
+}
+
+void Engine::State::waitForTiles() {
+    KeySet uploadedHere;  // a tile that was evicted again is not fetched twice: so the loop ends
+    for (;;) {
+        resident.beginFrame();
+        selectAndPin();
+        std::vector<TileRequest> batch = attainable();
+        std::erase_if(batch, [&](const TileRequest& request) { return uploadedHere.contains(keyOf(request)); });
+        if (batch.size() > kMaxPendingTiles) batch.resize(kMaxPendingTiles);
+        resident.keepOnly(batch);
+        if (batch.empty()) break;
+
+        const size_t failedBefore = failed.size();
+        waitForArrivals(notPending(batch));
+        const std::vector<TileKey> uploaded = upload(batch, kUnlimited);
+        uploadedHere.insert(uploaded.begin(), uploaded.end());
+        if (uploaded.empty() && failed.size() == failedBefore) break;
+    }
+    pager.want({});
+}
+
+void Engine::State::waitForArrivals(const std::vector<TileRequest>& requests) {
+    pager.want(requests);
+    const Clock::time_point start = Clock::now();
+    pager.waitUntilSettled();
+    report.waitMs += millisecondsSince(start);
+    takeArrivals(std::numeric_limits<size_t>::max());
+}
+
+void Engine::State::render() {
+    renderer.render(view, selection.nodes, resident.gpu(), options.render, targets, &timer);
+}
+
+void Engine::State::fillReport() {
+    report.nodes = selection.nodes.size();
+    for (const DrawNode& node : selection.nodes)
+        if (!node.heightsExact || !node.imageryExact) ++report.standIns;
+    report.wanted = selection.wanted.size();
+    report.residentHeights = resident.gpu().residentHeights();
+    report.residentImagery = resident.gpu().residentImagery();
+    report.gpuTiles = resident.gpu().allocatedBytes();
+    report.gpuTargets = targets.bytes();
+    report.gpuBuffers = renderer.bufferBytes();
+    report.pager = pager.statistics();
+}
+
+Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width,
+               int height)
+    : state_(std::make_unique<State>(source, shaders, options, width, height)) {}
+
+Engine::~Engine() = default;
+
+FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
+    const Clock::time_point start = Clock::now();
+    State& state = *state_;
+    state.report = {};
+    state.view = viewOf(camera, state.targets.width(), state.targets.height());
+    state.timer.enter(GpuPass::upload);
+    if (waitForTiles) {
+        state.waitForTiles();
+    } else {
+        state.stream();
+    }
+    state.render();
+    state.report.cpuMs = millisecondsSince(start) - state.report.waitMs;
+    state.report.gpuMs = state.timer.finishFrame();
+    state.report.frameMs = millisecondsSince(start) - state.report.waitMs;
+    state.fillReport();
+    return std::exchange(state.report, {});
+}
+
+const FrameTargets& Engine::targets() const {
+    return state_->targets;
+}
+
+const std::vector<DrawNode>& Engine::nodes() const {
+    return state_->selection.nodes;
+}
+
+const View& Engine::view() const {
+    return state_->view;
+}
+
+const GpuTiles& Engine::tiles() const {
+    return state_->resident.gpu();
+}
+
+glm::dvec3 Engine::worldFromHit(const DrawNode& node, const glm::vec4& hit) const {
+    const ResidentHeights* heights = tiles().heights(node.heightTile);
+    TERRAY_CHECK(heights != nullptr);
+    const Tiling& tiling = state_->resident.tree().tiling();
+    const double spacing = tiling.spacing(node.heightTile.level);
+    const GroundRect bounds = tiling.bounds(node.heightTile);
+    const HeightEncoding& encoding = heights->encoding;
+    return {bounds.west + hit.x * spacing, bounds.north - hit.y * spacing,
+            (static_cast<double>(encoding.offset) + hit.z) * encoding.metresPerCode()};
+}
+
+}  // namespace terray

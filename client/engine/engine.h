@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/render/frame_targets.h"
+#include "client/render/gpu_tiles.h"
+#include "client/render/gpu_timer.h"
+#include "client/render/terrain_renderer.h"
+#include "client/stream/camera.h"
+#include "client/stream/dataset_source.h"
+#include "client/stream/pager.h"
+#include "client/stream/selection.h"
+
+namespace terray {
+
+/// How the frame loop pages and draws. Every field is an option of terray-view and terray-bench.
+struct EngineOptions {
+    SelectionOptions selection;
+    RenderOptions render;
+    PagerOptions pager;
+    uint64_t gpuHeightBytes = 256ull << 20;
+    uint64_t gpuImageryBytes = 256ull << 20;
+    uint64_t uploadBytesPerFrame = 16ull << 20;  ///< at least one tile is uploaded however small it is
+    FeatureSet
+        features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
+    ColourFormat colour = ColourFormat::srgb8;
+};
+
+/// What a frame did. Times in milliseconds, sizes in bytes.
+struct FrameReport {
+    double cpuMs = 0;    ///< of the render thread: selection, uploads, draw calls; no waiting for tiles or the GPU
+    double waitMs = 0;   ///< the render thread stood still for tiles (waitForTiles only)
+    double frameMs = 0;  ///< drawFrame() from start to end less waitMs; it ends when the GPU has finished
+    std::array<double, kGpuPasses> gpuMs{};
+    size_t nodes = 0;
+    size_t standIns = 0;  ///< nodes drawn from an ancestor of what was wanted
+    size_t wanted = 0;    ///< tiles that the frame still lacked, failed ones among them
+    size_t uploadedTiles = 0;
+    uint64_t uploadedBytes = 0;
+    size_t residentHeights = 0;
+    size_t residentImagery = 0;
+    GpuTileBytes gpuTiles;
+    uint64_t gpuTargets = 0;
+    uint64_t gpuBuffers = 0;
+    PagerStatistics pager;
+    std::vector<std::string> failures;  ///< tiles that could not be had, as sentences; each is told once
+};
+
+/// The frame loop that viewer and bench share: pager, tile tree, selection, uploads, renderer over one dataset.
+///
+/// GL thread only; a context must be current from construction to destruction.
+class Engine {
+  public:
+    /// Loads the root tiles; they stay on the GPU for good. `source` and `shaders` must outlive the engine.
+    /// Throws Error(dataset) when a root tile cannot be had, Error(graphics) when a shader does not compile.
+    Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width, int height);
+    ~Engine();
+    Engine(const Engine&) = delete;
+    Engine& operator=(const Engine&) = delete;
+
+    /// Draws one frame into targets(). With waitForTiles it first loads until the selection for this camera is
+    /// complete, or until budgets allow nothing more: then the picture depends only on the camera (and, when budgets
+    /// are too small, on what was drawn before), never on the order in which tiles arrive. It always ends: within one
+    /// wait no tile is uploaded twice, and a tile that failed is not asked for again.
+    FrameReport drawFrame(const Camera& camera, bool waitForTiles);
+
+    [[nodiscard]] const FrameTargets& targets() const;
+    /// The nodes of the last frame; node index plus 1 is what targets().readNodes() holds.
+    [[nodiscard]] const std::vector<DrawNode>& nodes() const;
+    [[nodiscard]] const View& view() const;
+    [[nodiscard]] const GpuTiles& tiles() const;
+
+    /// World position of a hit: tile frame of the node to world, in double.
+    [[nodiscard]] glm::dvec3 worldFromHit(const DrawNode& node, const glm::vec4& hit) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace terray

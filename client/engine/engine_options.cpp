@@ -1,0 +1,121 @@
+#include "client/engine/engine_options.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include "common/error.h"
+#include "common/units.h"
+
+namespace terray {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found, const std::string& expected) {
+    throw Error(ExitCode::usage, option + ": found \"" + found + "\", expected " + expected);
+}
+
+std::string shortText(double value) {
+    return Json(value).dump();
+}
+
+void requireRange(const std::string& option, double value, double least, double most) {
+    if (value < least || value > most)
+        refuse(option, shortText(value), "a number from " + shortText(least) + " to " + shortText(most));
+}
+
+std::optional<double> parseNumber(std::string_view text) {
+    double value = 0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !std::isfinite(value)) return {};
+    return value;
+}
+
+std::string degreesOf(const glm::dvec3& sun) {
+    const double azimuth = degreesFromRadians(Radians(std::atan2(sun.x, sun.y)));
+    const double elevation = degreesFromRadians(Radians(std::atan2(sun.z, std::hypot(sun.x, sun.y))));
+    char text[64];
+    std::snprintf(text, sizeof(text), "%.1f,%.1f", azimuth < 0 ? azimuth + 360 : azimuth, elevation);
+    return text;
+}
+
+}  // namespace
+
+glm::dvec3 sunDirection(const std::string& azimuthAndElevation) {
+    const std::string_view text = azimuthAndElevation;
+    const size_t comma = text.find(',');
+    std::optional<double> azimuth;
+    std::optional<double> elevation;
+    if (comma != std::string_view::npos) {
+        azimuth = parseNumber(text.substr(0, comma));
+        elevation = parseNumber(text.substr(comma + 1));
+    }
+    if (!azimuth || !elevation || std::abs(*elevation) > 90)
+        refuse("--sun", azimuthAndElevation, "AZIMUTH,ELEVATION in degrees, the elevation from -90 to 90");
+    const double turn = radiansFromDegrees(*azimuth).value();
+    const double rise = radiansFromDegrees(*elevation).value();
+    return {std::sin(turn) * std::cos(rise), std::cos(turn) * std::cos(rise), std::sin(rise)};
+}
+
+void EngineCommandLine::declare(CommandLine& line) {
+    sun_ = degreesOf(RenderOptions().sunDirection);
+    line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
+    line.option("--imagery-tolerance", imageryTolerance_, "PIXELS", "largest projected side of a photo's texel (1)");
+    line.flag("--no-imagery", noImagery_, "ignore the dataset's photo");
+    line.option("--sun", sun_, "AZIMUTH,ELEVATION", "degrees from grid north and above the horizon (" + sun_ + ")");
+    line.option("--anisotropy", anisotropy_, "RATIO", "of photo sampling, 1 to 16 (16)");
+    line.bytes("--host-memory", hostMemory_, "for decoded tiles in main memory (1G)");
+    line.bytes("--gpu-memory", gpuMemory_,
+               "for tiles on the GPU, half to heights and half to the photo; all to heights without a photo (512M)");
+    line.bytes("--upload-budget", uploadBudget_, "of one frame, at least one tile; not while waiting for tiles (16M)");
+    line.option("--decode-threads", decodeThreads_, "N", "0: one less than the machine's cores (0)");
+    line.option("--occlusion", occlusion_, "on|off", "the tile-ID pass ahead of the march (on)");
+    line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
+    line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
+}
+
+EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
+    constexpr double kMostPixels = 1e6;
+    requireRange("--tolerance", tolerance_, 1e-3, kMostPixels);
+    requireRange("--imagery-tolerance", imageryTolerance_, 1e-3, kMostPixels);
+    requireRange("--anisotropy", anisotropy_, 1, 16);
+    requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
+    if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
+
+    EngineOptions options;
+    options.selection.tolerance = Pixels(tolerance_);
+    options.selection.imageryTolerance = Pixels(imageryTolerance_);
+    options.selection.useImagery = datasetHasImagery && !noImagery_;
+    options.render.sunDirection = sunDirection(sun_);
+    options.render.anisotropy = static_cast<float>(anisotropy_);
+    options.render.occlusion = occlusion_ == "on";
+    options.pager.hostBudgetBytes = hostMemory_;
+    options.pager.decodeThreads = static_cast<int>(decodeThreads_);
+    options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;
+    options.gpuHeightBytes = gpuMemory_ - options.gpuImageryBytes;
+    options.uploadBytesPerFrame = uploadBudget_;
+    options.features.signalSky = signalSky_;
+    return options;
+}
+
+Json EngineCommandLine::toJson() const {
+    return Json::Object{{"tolerance", tolerance_},
+                        {"imagery-tolerance", imageryTolerance_},
+                        {"no-imagery", noImagery_},
+                        {"sun", sun_},
+                        {"anisotropy", anisotropy_},
+                        {"host-memory", hostMemory_},
+                        {"gpu-memory", gpuMemory_},
+                        {"upload-budget", uploadBudget_},
+                        {"decode-threads", decodeThreads_},
+                        {"occlusion", occlusion_},
+                        {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
+                        {"signal-sky", signalSky_}};
+}
+
+ShaderLibrary EngineCommandLine::shaders() const {
+    return shaders_.empty() ? ShaderLibrary() : ShaderLibrary(shaders_);
+}
+
+}  // namespace terray

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "client/engine/engine.h"
+#include "common/command_line.h"
+#include "common/json.h"
+
+namespace terray {
+
+/// EngineOptions as they are written on a command line: the same names and defaults in every program that draws.
+class EngineCommandLine {
+  public:
+    /// Declares the options. This object must outlive line.parse().
+    void declare(CommandLine& line);
+
+    /// What was given, checked. @param datasetHasImagery  decides how --gpu-memory is split: half to heights and half
+    /// to imagery; all of it to heights when there is no imagery or --no-imagery was given. Throws Error(usage) naming
+    /// the option that is out of range.
+    [[nodiscard]] EngineOptions options(bool datasetHasImagery) const;
+
+    /// Every option by name without its dashes, as it is in force, for manifests.
+    [[nodiscard]] Json toJson() const;
+
+    /// The directory given by --shaders; none: the sources compiled into the program.
+    [[nodiscard]] ShaderLibrary shaders() const;
+
+  private:
+    double tolerance_ = SelectionOptions().tolerance.value();
+    double imageryTolerance_ = SelectionOptions().imageryTolerance.value();
+    bool noImagery_ = false;
+    std::string sun_;
+    double anisotropy_ = RenderOptions().anisotropy;
+    uint64_t hostMemory_ = PagerOptions().hostBudgetBytes;
+    uint64_t gpuMemory_ = EngineOptions().gpuHeightBytes + EngineOptions().gpuImageryBytes;
+    uint64_t uploadBudget_ = EngineOptions().uploadBytesPerFrame;
+    int64_t decodeThreads_ = 0;
+    std::string occlusion_ = "on";
+    std::string shaders_;
+    bool signalSky_ = false;
+};
+
+/// The direction towards a sun given as "AZIMUTH,ELEVATION": degrees clockwise from grid north, and above the horizon
+/// (-90 .. 90). Unit length, world frame. Throws Error(usage) on anything else.
+[[nodiscard]] glm::dvec3 sunDirection(const std::string& azimuthAndElevation);
+
+}  // namespace terray

@@ -1,0 +1,172 @@
+#include "client/engine/resident_tiles.h"
+
+#include <set>
+#include <string>
+
+#include "common/error.h"
+
+namespace terray {
+namespace {
+
+constexpr TileId kRoot{};
+
+/// The value, or Error(dataset) saying which root tile could not be had.
+template <class T>
+T required(Result<T> result, const char* what) {
+    if (!result)
+        throw Error(ExitCode::dataset, std::string("cannot use the dataset's coarsest ") + what + " tile: " +
+                                           result.failure().message + " (terray-preprocess verify tells more)");
+    return std::move(result).value();
+}
+
+template <class Tile>
+Tile readRoot(const TileSource& source, TileLayer layer, Result<Tile> (*decode)(ByteView, std::optional<TileId>),
+              const char* what) {
+    const Bytes payload = required(source.read(layer, kRoot), what);
+    return required(decode(payload, kRoot), what);
+}
+
+uint64_t uploadBytes(TileLayer layer) {
+    return layer == TileLayer::heights ? GpuTiles::heightUploadBytes() : GpuTiles::imageryUploadBytes();
+}
+
+}  // namespace
+
+ResidentTiles::ResidentTiles(const TileSource& source, const ShaderLibrary& shaders, const GpuTilesOptions& options,
+                             bool useImagery)
+    : tree_(source.metadata().tiling, source.metadata().tiling.finestLevel,
+            useImagery ? source.metadata().imageryLevel : std::nullopt),
+      gpu_(shaders, options) {
+    loadRoots(source);
+}
+
+void ResidentTiles::loadRoots(const TileSource& source) {
+    HeightTile heights = readRoot(source, TileLayer::heights, decodeHeightTile, "height");
+    uploadRoot({.layer = TileLayer::heights, .heights = std::make_shared<HeightTile>(std::move(heights))});
+    if (!tree_.hasImagery()) return;
+    ImageryTile imagery = readRoot(source, TileLayer::imagery, decodeImageryTile, "imagery");
+    Bytes chain = gatherMipChain(imagery, {});
+    uploadRoot({.layer = TileLayer::imagery,
+                .imageryChain = std::make_shared<Bytes>(std::move(chain)),
+                .imagery = std::make_shared<ImageryTile>(std::move(imagery))});
+}
+
+void ResidentTiles::uploadRoot(const LoadedTile& root) {
+    accept(root);
+    TERRAY_CHECK(uploadOne(root));  // the first upload of its layer: every slot is free
+    pending_.clear();
+}
+
+void ResidentTiles::accept(LoadedTile tile) {
+    if (tile.layer == TileLayer::heights) {
+        tree_.learn(*tile.heights);
+    } else {
+        tree_.learn(*tile.imagery);
+    }
+    const TileKey key{tile.layer, tile.id};
+    if (!isResident(key)) pending_.insert_or_assign(key, std::move(tile));
+}
+
+void ResidentTiles::keepOnly(const std::vector<TileRequest>& wanted) {
+    std::unordered_set<TileKey, TileKeyHash> keep;
+    for (const TileRequest& request : wanted) keep.insert(keyOf(request));
+    std::erase_if(pending_, [&](const auto& entry) { return !keep.contains(entry.first); });
+}
+
+void ResidentTiles::beginFrame() {
+    gpu_.beginFrame();
+    pinnedHeights_ = {kRoot};
+    gpu_.pinHeights(kRoot);
+    if (!tree_.hasImagery()) return;
+    pinnedImagery_ = {kRoot};
+    gpu_.pinImagery(kRoot);
+}
+
+void ResidentTiles::pin(const Selection& selection) {
+    for (const DrawNode& node : selection.nodes) {
+        pinnedHeights_.insert(node.heightTile);
+        if (node.imageryTile) pinnedImagery_.insert(*node.imageryTile);
+    }
+    const auto touchAncestors = [](TileId id, const auto& resident, const auto& touch) {
+        while (id.level > 0) {
+            id = id.parent();
+            if (resident(id)) touch(id);
+        }
+    };
+    // In the order of the nodes, so that the least recently used tile is the same one in every run.
+    for (const DrawNode& node : selection.nodes) {
+        touchAncestors(
+            node.heightTile,
+            [&](const TileId& id) {
+                return isResident({TileLayer::heights, id});
+            },
+            [&](const TileId& id) { gpu_.touchHeights(id); });
+        if (node.imageryTile)
+            touchAncestors(
+                *node.imageryTile,
+                [&](const TileId& id) {
+                    return isResident({TileLayer::imagery, id});
+                },
+                [&](const TileId& id) { gpu_.touchImagery(id); });
+    }
+    for (const DrawNode& node : selection.nodes) {
+        gpu_.pinHeights(node.heightTile);
+        if (node.imageryTile) gpu_.pinImagery(*node.imageryTile);
+    }
+}
+
+bool ResidentTiles::full(TileLayer layer) const {
+    return layer == TileLayer::heights ? pinnedHeights_.size() >= gpu_.heightSlots()
+                                       : pinnedImagery_.size() >= gpu_.imagerySlots();
+}
+
+Uploads ResidentTiles::upload(const std::vector<TileRequest>& wanted, uint64_t budgetBytes,
+                              std::vector<TileKey>* uploaded) {
+    Uploads done;
+    std::set<TileLayer> withoutSlot;
+    for (const TileRequest& request : wanted) {
+        const auto found = pending_.find(keyOf(request));
+        if (found == pending_.end() || withoutSlot.contains(request.layer)) continue;
+        const uint64_t bytes = uploadBytes(request.layer);
+        if (done.tiles > 0 && done.bytes + bytes > budgetBytes) break;
+        if (!uploadOne(found->second)) {
+            withoutSlot.insert(request.layer);
+            continue;
+        }
+        if (uploaded != nullptr) uploaded->push_back(found->first);
+        pending_.erase(found);
+        ++done.tiles;
+        done.bytes += bytes;
+    }
+    return done;
+}
+
+bool ResidentTiles::uploadOne(const LoadedTile& tile) {
+    const bool isHeights = tile.layer == TileLayer::heights;
+    const GpuTiles::Upload upload =
+        isHeights ? gpu_.uploadHeights(*tile.heights) : gpu_.uploadImagery(tile.id, *tile.imageryChain);
+    if (!upload.done) return false;
+    if (upload.evicted) setResident({tile.layer, *upload.evicted}, false);
+    setResident({tile.layer, tile.id}, true);
+    if (isHeights) {
+        gpu_.pinHeights(tile.id);
+    } else {
+        gpu_.pinImagery(tile.id);
+    }
+    return true;
+}
+
+void ResidentTiles::setResident(const TileKey& key, bool resident) {
+    if (key.layer == TileLayer::heights) {
+        tree_.setHeightsResident(key.id, resident);
+    } else {
+        tree_.setImageryResident(key.id, resident);
+    }
+}
+
+bool ResidentTiles::isResident(const TileKey& key) const {
+    if (key.layer == TileLayer::heights) return gpu_.heights(key.id) != nullptr;
+    return gpu_.imagerySlot(key.id).has_value();
+}
+
+}  // namespace terray

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "common/grid.h"
+
+namespace terray {
+
+/// Writes a picture as PNG: 8-bit sRGB with alpha, row 0 at the top, through OpenImageIO. The file appears whole or not
+/// at all. Throws Error(output) when it cannot be written.
+void writePng(const std::filesystem::path& path, GridView<const std::array<uint8_t, 4>> srgb);
+
+/// A picture with everything that is known of each pixel. All grids have one size; row 0 is the top.
+struct MeasuredPicture {
+    Grid<glm::vec4> colour;        ///< linear, primaries of sRGB; alpha 1
+    Grid<float> depthMetres;       ///< along the view axis; infinity where there is sky
+    glm::dvec3 positionOrigin{0};  ///< world, metres: add it to positions
+    Grid<glm::vec3> position;      ///< of the hit, world, metres less positionOrigin; 0 where there is sky
+    Grid<glm::vec3> normal;        ///< world (east, north, up), unit length; 0 where there is sky
+    Grid<uint32_t> nodeLevel;      ///< level of the height tile that was hit; 0 where there is sky
+    Grid<uint32_t> steps;          ///< of the pixel's ray over all nodes
+    Grid<uint32_t> hit;            ///< 1: ground, 0: sky
+};
+
+/// Writes such a picture as OpenEXR, ZIP-compressed: channels R G B A (half), depth.metres, position.x/y/z,
+/// normal.x/y/z (float), node.level, ray.steps, ray.hit (unsigned integers). The attribute "terray:positionOrigin"
+/// (three doubles) belongs to position: floats alone would leave decimetres at UTM northings. The file appears whole or
+/// not at all. Throws Error(output) when it cannot be written.
+void writeExr(const std::filesystem::path& path, const MeasuredPicture& picture);
+
+}  // namespace terray

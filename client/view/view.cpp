@@ -1,0 +1,155 @@
+#include "client/view/view.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include <glm/common.hpp>
+
+#include "client/engine/dataset_camera.h"
+#include "client/engine/engine.h"
+#include "client/engine/engine_options.h"
+#include "client/output/partial_file.h"
+#include "client/output/picture.h"
+#include "client/render/gl_context.h"
+#include "client/stream/camera.h"
+#include "client/stream/dataset_source.h"
+#include "common/command_line.h"
+
+namespace terray {
+namespace {
+
+enum class PictureKind { png, exr };
+
+struct ViewOptions {
+    std::string dataset;
+    bool headless = false;
+    std::string camera;
+    int width = 1280;
+    int height = 720;
+    std::string out;
+    bool force = false;
+    EngineCommandLine engine;
+};
+
+bool parse(ViewOptions& options, const std::vector<std::string>& arguments) {
+    CommandLine line("terray-view", "Draws one picture of a dataset, when all of its tiles are loaded.");
+    line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
+    line.flag("--headless", options.headless, "draw without a window");
+    line.option("--camera", options.camera, "LON,LAT,HEIGHT,HEADING,PITCH[,FOV]",
+                "degrees and metres; X,Y instead of LON,LAT where the dataset has no coordinate system or this build "
+                "no PROJ (an overview of the whole dataset)");
+    line.size("--size", options.width, options.height, "of the picture in pixels (1280x720)");
+    line.option("--out", options.out, "FILE.png|FILE.exr", "where the picture goes");
+    line.flag("--force", options.force, "replace an existing picture");
+    options.engine.declare(line);
+    return line.parse(arguments);
+}
+
+PictureKind kindOf(const std::filesystem::path& path) {
+    const std::string extension = path.extension().string();
+    if (extension == ".png") return PictureKind::png;
+    if (extension == ".exr") return PictureKind::exr;
+    throw Error(ExitCode::usage, "--out: found \"" + path.string() + "\", expected a name that ends in .png or .exr");
+}
+
+/// Fails before anything is drawn when the picture could not be written in the end.
+void requireWritable(const std::filesystem::path& path, bool force) {
+    if (std::filesystem::exists(path) && !force)
+        throw Error(ExitCode::output, path.string() + " exists (give --force to replace it)");
+    const PartialFile probe(path);
+    std::FILE* file = std::fopen(probe.path().c_str(), "wb");
+    if (file == nullptr) probe.fail("its directory is missing or not writable");
+    std::fclose(file);
+}
+
+Camera cameraOf(const ViewOptions& options, const DatasetMetadata& metadata) {
+    const std::optional<Projection> projection = projectionOf(metadata);
+    if (options.camera.empty()) return overviewCamera(metadata, static_cast<double>(options.width) / options.height);
+    Result<Camera> camera = parseCamera(options.camera, projection ? &*projection : nullptr);
+    if (!camera) throw Error(ExitCode::usage, "--camera: " + camera.failure().message);
+    return *camera;
+}
+
+EngineOptions engineOptions(const ViewOptions& options, PictureKind kind, const DatasetMetadata& metadata) {
+    EngineOptions engine = options.engine.options(metadata.imageryLevel.has_value());
+    if (kind == PictureKind::exr) {
+        engine.features.statistics = engine.features.normals = true;
+        engine.colour = ColourFormat::linearFloat;
+    }
+    return engine;
+}
+
+MeasuredPicture measure(const Engine& engine) {
+    constexpr uint32_t kStepsMask = 0xffff;  // FrameTargets::readSteps
+    const FrameTargets& targets = engine.targets();
+    const Grid<glm::vec4> hits = targets.readHits();
+    const Grid<uint32_t> nodes = targets.readNodes();
+    const Grid<uint32_t> steps = targets.readSteps();
+    const GridSize size = hits.size();
+    MeasuredPicture picture{.colour = targets.readLinear(),
+                            .depthMetres = Grid<float>(size, std::numeric_limits<float>::infinity()),
+                            .positionOrigin = glm::floor(engine.view().eye),
+                            .position = Grid<glm::vec3>(size, glm::vec3(0)),
+                            .normal = targets.readNormals(),
+                            .nodeLevel = Grid<uint32_t>(size),
+                            .steps = Grid<uint32_t>(size),
+                            .hit = Grid<uint32_t>(size)};
+    for (size_t n = 0; n < hits.cells().size(); ++n) {
+        picture.steps.cells()[n] = steps.cells()[n] & kStepsMask;
+        const uint32_t nodeNumber = nodes.cells()[n];
+        if (nodeNumber == 0) continue;
+        const DrawNode& node = engine.nodes().at(nodeNumber - 1);
+        const glm::vec4& hit = hits.cells()[n];
+        picture.hit.cells()[n] = 1;
+        picture.depthMetres.cells()[n] = hit.w;
+        picture.nodeLevel.cells()[n] = node.heightTile.level;
+        picture.position.cells()[n] = glm::vec3(engine.worldFromHit(node, hit) - picture.positionOrigin);
+    }
+    return picture;
+}
+
+void refuseFailures(const FrameReport& report) {
+    if (report.failures.empty()) return;
+    std::string message = std::to_string(report.failures.size()) +
+                          " tiles of this view cannot be had, first: " + report.failures.front() +
+                          " (terray-preprocess verify lists all; no picture was written)";
+    throw Error(ExitCode::dataset, message);
+}
+
+}  // namespace
+
+ExitCode runView(const std::vector<std::string>& arguments) {
+    ViewOptions options;
+    if (!parse(options, arguments)) return ExitCode::ok;
+    if (!options.headless)
+        throw Error(ExitCode::unsupported, "the window arrives with a later version: give --headless and --out");
+    if (options.out.empty()) throw Error(ExitCode::usage, "--headless needs --out FILE.png or FILE.exr");
+    const std::filesystem::path out = options.out;
+    const PictureKind kind = kindOf(out);
+
+    const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
+    const EngineOptions chosen = engineOptions(options, kind, source->metadata());
+    const Camera camera = cameraOf(options, source->metadata());
+    requireWritable(out, options.force);
+
+    const HeadlessContext context;
+    requireRendererFeatures();
+    const ShaderLibrary shaders = options.engine.shaders();
+    Engine engine(*source, shaders, chosen, options.width, options.height);
+    const FrameReport report = engine.drawFrame(camera, true);
+    refuseFailures(report);
+    if (kind == PictureKind::png) {
+        writePng(out, engine.targets().readSrgb().view());
+    } else {
+        writeExr(out, measure(engine));
+    }
+    std::printf("%s: %d x %d pixels, %zu nodes from %zu height and %zu imagery tiles%s\n", out.c_str(), options.width,
+                options.height, report.nodes, report.residentHeights, report.residentImagery,
+                report.wanted > 0 ? ", coarser than asked: the GPU memory budget is too small" : "");
+    return ExitCode::ok;
+}
+
+}  // namespace terray

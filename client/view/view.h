@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/error.h"
+
+namespace terray {
+
+/// The program terray-view without its name: draws one picture of a dataset (`--headless`) and writes it as PNG or EXR.
+/// Throws Error as README's table of exit codes says; a picture for which a tile could not be read is not written.
+/// Needs no current GL context: it makes its own.
+ExitCode runView(const std::vector<std::string>& arguments);
+
+}  // namespace terray
