@@ -1,0 +1,54 @@
+#include "preprocess/commands.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+
+#include "common/version.h"
+
+namespace terray {
+namespace {
+
+constexpr const char* kHelp =
+    "usage: terray-preprocess COMMAND ...\n"
+    "\n"
+    "Makes Terray datasets of heights and photos, and looks into them.\n"
+    "\n"
+    "  build DEM... --out DIR   from rasters\n"
+    "  synth --size N --out DIR procedural terrain\n"
+    "  info DIR                 what a dataset holds\n"
+    "  verify DIR               whether all that a dataset says of itself holds\n"
+    "\n"
+    "terray-preprocess COMMAND --help says more; terray-preprocess --version says which build this is.\n";
+
+ExitCode printVersion() {
+    const BuildInfo& info = buildInfo();
+    std::printf("terray-preprocess %.*s (commit %.*s%s, %.*s, %.*s)\n", static_cast<int>(info.version.size()),
+                info.version.data(), static_cast<int>(info.commit.size()), info.commit.data(),
+                info.dirty ? ", modified" : "", static_cast<int>(info.compiler.size()), info.compiler.data(),
+                static_cast<int>(info.build.size()), info.build.data());
+    return ExitCode::ok;
+}
+
+}  // namespace
+
+ExitCode runPreprocess(const std::vector<std::string>& arguments, const std::atomic<bool>& stop) {
+    if (arguments.empty()) throw Error(ExitCode::usage, std::string("no command given\n") + kHelp);
+    const std::string& command = arguments.front();
+    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    if (command == "build") return runBuild(rest, stop);
+    if (command == "synth") return runSynth(rest, stop);
+    if (command == "info") return runInfo(rest);
+    if (command == "verify") return runVerify(rest, stop);
+    if (command == "--version") return printVersion();
+    if (command != "--help")
+        throw Error(ExitCode::usage, "unknown command \"" + command + "\"; known are build, synth, info and verify");
+    std::fputs(kHelp, stdout);
+    return ExitCode::ok;
+}
+
+int machineJobs() {
+    return static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
+}
+
+}  // namespace terray

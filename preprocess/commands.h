@@ -1,0 +1,25 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "common/error.h"
+
+namespace terray {
+
+/// Runs terray-preprocess as if called with `arguments` (without the program's name); output goes to stdout and stderr.
+/// @param stop  once true, the work ends soon with Error(interrupted) and leaves nothing behind
+/// Throws Error, which is for main to print.
+[[nodiscard]] ExitCode runPreprocess(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
+
+// The sub-commands, with the arguments after their names.
+[[nodiscard]] ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
+[[nodiscard]] ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
+[[nodiscard]] ExitCode runInfo(const std::vector<std::string>& arguments);
+[[nodiscard]] ExitCode runVerify(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
+
+/// Threads that this machine runs at once, at least 1.
+[[nodiscard]] int machineJobs();
+
+}  // namespace terray

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "preprocess/build_context.h"
+#include "preprocess/raster_source.h"
+
+namespace terray {
+
+/// What building the heights measured.
+struct HeightTotals {
+    uint64_t tiles = 0;
+    uint64_t holeSamples = 0;         ///< finest samples of the source without surface
+    double minHeight = 0;             ///< metres, over all tiles of all levels, rounded down
+    double maxHeight = 0;             ///< metres, rounded up
+    std::vector<double> levelErrors;  ///< metres, greatest of each level, level 0 first
+};
+
+/// Heights beyond this are an undeclared nodata value, not ground: 10,000 km.
+inline constexpr float kGreatestHeight = 1e7f;
+
+/// Builds all tiles of the height pyramid from one pass over the source, block by block, and spills them.
+///
+/// @param depth    levels in a block (planWork)
+/// @param quantum  metres, of HeightEncoding
+/// Throws Error(input) when the source cannot be read, holds heights beyond kGreatestHeight, or has no height at all.
+[[nodiscard]] HeightTotals buildHeightPyramid(const HeightSource& source, uint32_t depth, double quantum,
+                                              TileSpill& spill, BuildContext& context);
+
+}  // namespace terray

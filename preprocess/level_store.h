@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "common/grid.h"
+#include "preprocess/work_file.h"
+
+namespace terray {
+
+/// The samples of one level between two stages of the build: written tile by tile by the stage below, read in windows
+/// with margins by the stage above.
+///
+/// A sample is `planes` floats (heights: mean, lowest, highest; photos: red, green, blue, coverage), so a tile takes
+/// 512 x 512 x planes x 4 bytes of a temporary file; tiles never written take no space and read as `fill`. Any thread
+/// may write a tile of its own; reading begins when all writing has ended.
+class LevelStore {
+  public:
+    /// @param tiles  columns and rows of tiles that the level has
+    LevelStore(const std::filesystem::path& path, GridSize tiles, int planes, float fill);
+
+    /// Stores a tile's core: one kTileCore x kTileCore view for each plane.
+    void write(int64_t tileX, int64_t tileY, std::span<const GridView<const float>> planes);
+    [[nodiscard]] bool has(int64_t tileX, int64_t tileY) const;
+    /// One plane of `window`, in samples of the level; beyond the level and in tiles not written: `fill`.
+    void read(const GridRect& window, int plane, GridView<float> out) const;
+
+  private:
+    [[nodiscard]] uint64_t rowOffset(int64_t tileX, int64_t tileY, int plane, int64_t row) const;
+
+    GridSize tiles_;
+    int planes_;
+    float fill_;
+    WorkFile file_;
+    Grid<uint8_t> written_;
+};
+
+}  // namespace terray
