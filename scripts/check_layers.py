@@ -31,15 +31,17 @@ PROJECT = {
 }
 PROJECT["tests"] = list(PROJECT)  # a test may look at everything
 CPP_FOLDERS = [folder for folder in PROJECT if not folder.startswith("shaders")]
+# Beside them the C++ faces of the shaders; shaders/math has one. GLSL itself includes no foreign header anywhere.
+CPP_EVERYWHERE = {**{folder: MANY for folder in CPP_FOLDERS}, "shaders": MANY, "shaders/math": 1}
 
 # name: (pattern of its headers, {folder: number of files that may include it}); tests may include any of them
 FOREIGN = {
-    "the C++ standard library": (r"[a-z_0-9]+", {folder: MANY for folder in CPP_FOLDERS + ["shaders"]}),
+    "the C++ standard library": (r"[a-z_0-9]+", CPP_EVERYWHERE),
     "POSIX": (
         r"(sys|netinet|arpa)/\w+\.h|(unistd|fcntl|dirent|poll|pthread|sched|signal|termios|dlfcn)\.h",
         {folder: MANY for folder in CPP_FOLDERS},
     ),
-    "GLM": (r"glm/.*", {folder: MANY for folder in CPP_FOLDERS + ["shaders"]}),
+    "GLM": (r"glm/.*", CPP_EVERYWHERE),
     "zstd": (r"(zstd|zstd_errors|zdict)\.h", {"common": 1}),
     "zlib": (r"(zlib|zconf)\.h", {"common": 1}),
     "GeographicLib": (r"GeographicLib/.*", {"common": 1}),
@@ -81,11 +83,11 @@ def includes(text):
 def project_file(root, source, header):
     """Root-relative path of the project file that `header` names in `source`, or None.
 
-    C++ names files from the root; a shader also from shaders/ or from its own folder.
+    Files are named from the root; shaders name each other also from shaders/.
     """
     bases = [root]
-    if source.suffix in GLSL:
-        bases += [root / "shaders", source.parent]
+    if source.is_relative_to(root / "shaders"):
+        bases.append(root / "shaders")
     for base in bases:
         candidate = (base / header).resolve()
         if candidate.is_file() and candidate.is_relative_to(root):
@@ -106,14 +108,16 @@ def foreign_name(header):
     return next((name for name, (pattern, _) in FOREIGN.items() if re.fullmatch(pattern, header)), None)
 
 
-def foreign_fault(layer, name):
+def foreign_fault(layer, name, is_glsl):
     """Why `layer` must not include the library `name`, or None if it may."""
+    if is_glsl:
+        return "GLSL includes only files of shaders"
     if name is None:
         return "no known library has it (a new dependency is entered in scripts/check_layers.py)"
     doors = FOREIGN[name][1]
     if layer in doors or layer == "tests":
         return None
-    return f"{name} is allowed only in {', '.join([*doors, 'tests'])}"
+    return f"{name} is allowed only in {', '.join(dict.fromkeys([*doors, 'tests']))}"
 
 
 def source_files(root):
@@ -145,7 +149,7 @@ def check(root):
                 reason = "no such file in the project (quotes are for project files, named from the root)"
             else:
                 name = foreign_name(header)
-                reason = foreign_fault(layer, name)
+                reason = foreign_fault(layer, name, source.suffix in GLSL)
                 if name is not None and reason is None:
                     uses.setdefault((name, layer), {}).setdefault(path, line)
             if reason is not None:

@@ -56,6 +56,12 @@ class Layers(unittest.TestCase):
             "shaders/math/c.glsl": "",
         })))
 
+    def test_shader_math_has_one_face_in_cpp(self):
+        face = '#include <cmath>\n#include "math/box.glsl"\n'
+        self.assertEqual([], self.faults({"shaders/math/box.glsl": "", "shaders/math/a.h": face}))
+        self.assertEqual(2, len(self.faults({"shaders/math/box.glsl": "", "shaders/math/a.h": face,
+                                             "shaders/math/b.h": face})))
+
     def test_a_library_has_one_door(self):
         found = self.faults({"preprocess/a.cpp": "#include <gdal.h>\n", "preprocess/b.cpp": "#include <ogr_api.h>\n"})
         self.assertEqual(2, len(found))
