@@ -37,7 +37,7 @@ class Tree(unittest.TestCase):
 
 
 def is_guarded(header):
-    """Whether a header begins with #pragma once; what GLSL shares may have a macro instead: GLSL has no pragma for it."""
+    """Whether a header begins with #pragma once; one that GLSL shares may have a macro instead."""
     first = first_code_line((ROOT / header).read_text(encoding="utf-8"))
     return first == "#pragma once" or (header.parts[0] == "shaders" and first.startswith("#ifndef TERRAY_"))
 
