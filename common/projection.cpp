@@ -4,7 +4,9 @@
 #include <utility>
 
 #if TERRAY_WITH_PROJ
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include <proj.h>
 #endif
@@ -39,8 +41,9 @@ struct Projection::State {
         proj_errno_reset(transform);
         const PJ_COORD result = proj_trans(transform, direction, proj_coord(x, y, 0, HUGE_VAL));
         if (proj_errno(transform) == 0 && std::isfinite(result.xy.x) && std::isfinite(result.xy.y)) return result;
-        return Failure{"cannot convert " + std::to_string(x) + ", " + std::to_string(y) + " to " + what + ": " +
-                       reason()};
+        std::array<char, 64> place{};
+        std::snprintf(place.data(), place.size(), "%.9g, %.9g", x, y);
+        return Failure{"cannot convert " + std::string(place.data()) + " to " + what + ": " + reason()};
     }
 
     PJ_CONTEXT* context = proj_context_create();
