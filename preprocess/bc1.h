@@ -13,7 +13,4 @@ namespace terray {
 /// Built without stb (TERRAY_WITH_STB=0): throws Error(unsupported).
 [[nodiscard]] Bytes encodeBc1(GridView<const Rgba> image);
 
-/// The texels that such blocks stand for, as GPUs decode them (for tests and verification).
-[[nodiscard]] Grid<Rgba> decodeBc1(ByteView blocks, GridSize size);
-
 }  // namespace terray

@@ -11,6 +11,7 @@
 
 #include "common/dataset_metadata.h"
 #include "common/grid.h"
+#include "common/rgba.h"
 #include "common/tiling.h"
 
 namespace terray {
@@ -50,10 +51,7 @@ class HeightSource {
     [[nodiscard]] virtual std::unique_ptr<HeightReader> openReader() const = 0;
 };
 
-/// 8-bit sRGB and coverage: alpha 255 where the photo has data, else 0.
-using Rgba = std::array<uint8_t, 4>;
-
-/// Reads windows of a photo, resampled to the imagery grid: cells of Tiling::spacing(level()), anchored at the root
+/// Reads windows of a photo in 8-bit sRGB, alpha 255 where the photo has data, else 0, resampled to the imagery grid: cells of Tiling::spacing(level()), anchored at the root
 /// square's upper-left corner. One reader serves one thread.
 class ColourReader {
   public:

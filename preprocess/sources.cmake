@@ -1,9 +1,9 @@
 # Where heights and photos come from, and the encoder of photos. Each of GDAL, OpenImageIO and stb has its own library here;
 # built without it, that library answers with Error(unsupported).
 
-# What needs no foreign library: choice of grids and levels, the procedural terrain, the decoder, the answers of the missing.
+# What needs no foreign library: choice of grids and levels, the procedural terrain, the answers of the missing.
 add_library(terray_raster_base STATIC
-    bc1_decode.cpp missing_libraries.cpp raster_layout.cpp synthetic.cpp synthetic_terrain.cpp)
+    missing_libraries.cpp raster_layout.cpp synthetic.cpp synthetic_terrain.cpp)
 target_link_libraries(terray_raster_base PUBLIC terray_common)
 
 if(TERRAY_WITH_GDAL)
