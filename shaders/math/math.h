@@ -1,5 +1,6 @@
-// The modules of this folder as C++, twice: terray::mathf in float and terray::mathd in double. Double against float of the
-// same code shows rounding error; double against an independent reference shows the algorithm's (design, section 5).
+// The modules of this folder as C++, twice: terray::mathf in float and terray::mathd in double. Double against float of
+// the same code shows rounding error; double against an independent reference shows the algorithm's (design, section
+// 5).
 #pragma once
 
 #include <cmath>
