@@ -43,7 +43,7 @@ struct FrameParameters {
     vec4 up;        // xyz: half the picture's height, likewise; w: height in pixels
     vec4 forward;   // xyz: the view axis, unit; w: view depth that depth value 1 stands for, metres
     vec4 sun;       // xyz: towards the sun, unit, world
-    vec4 viewScale; // x: 1 / length of right, y: 1 / length of up, squared
+    vec4 viewScale; // x: 1 / length of right, y: 1 / length of up, squared; z: most probes of a photo sample
     vec4 ground;    // rgb: linear colour of ground without photo
 };
 

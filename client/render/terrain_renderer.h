@@ -17,12 +17,20 @@
 
 namespace terray {
 
+/// Who filters photos anisotropically.
+enum class PhotoFilter : uint8_t {
+    automatic,  ///< probes on Mesa's software rasterisers, whose texture units take 10 times as long, else hardware
+    hardware,   ///< the texture units: textureGrad with GL_TEXTURE_MAX_ANISOTROPY
+    probes,     ///< the resolve shader, by the same formula
+};
+
 /// Light and filtering of a frame.
 struct RenderOptions {
     glm::dvec3 sunDirection{-0.5, 0.35, 0.8};  ///< towards the sun, world frame, any length > 0
     float anisotropy = 16;                     ///< 1..16, of photo sampling
-    double nearMetres = 0.1;                   ///< view depth that depth value 1 stands for; hits nearer count as it
-    bool occlusion = true;                     ///< the tile-ID pass (paper 001, section 3.4)
+    PhotoFilter photoFilter = PhotoFilter::automatic;
+    double nearMetres = 0.1;  ///< view depth that depth value 1 stands for; hits nearer count as it
+    bool occlusion = true;    ///< the tile-ID pass (paper 001, section 3.4)
 };
 
 /// Draws lists of nodes by ray casting (paper 001, section 3): for each node front to back an ID pass and a march of
@@ -48,17 +56,18 @@ class TerrainRenderer {
     struct Variant {
         FeatureSet features;
         bool occlusion = true;
+        bool photoProbes = false;
         auto operator<=>(const Variant&) const = default;
     };
     Programs& programsFor(const Variant& variant);
     void uploadFrame(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
                      const RenderOptions& options);
     void castNodes(size_t count, const Programs& programs, const FrameTargets& targets, GpuTimer* timer);
-    void resolve(const Programs& programs, const GpuTiles& tiles, const RenderOptions& options,
-                 const FrameTargets& targets);
+    void resolve(const Programs& programs, const GpuTiles& tiles, float anisotropy, const FrameTargets& targets);
 
     const ShaderLibrary& shaders_;
     Tiling tiling_;
+    bool softwareRasteriser_;
     std::map<Variant, std::unique_ptr<Programs>> programs_;
     GlBuffer nodeBuffer_;
     GlBuffer frameBuffer_;
