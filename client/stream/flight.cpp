@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <span>
+#include <sstream>
 
 #include "common/check.h"
 #include "common/error.h"
@@ -204,9 +204,10 @@ Flight loadFlight(const std::filesystem::path& path) {
     };
     std::ifstream file(path, std::ios::binary);
     if (!file) throw refuse("it cannot be opened");
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (file.bad()) throw refuse("reading failed");
-    const auto json = Json::parse(text);
+    std::ostringstream text;
+    text << file.rdbuf();
+    if (!text) throw refuse("it is empty, or reading failed");
+    const auto json = Json::parse(text.str());
     if (!json) throw refuse(json.failure().message);
     auto flight = flightFromJson(*json);
     if (!flight) throw refuse(flight.failure().message);

@@ -122,7 +122,8 @@ struct Pager::State {
     KeySet busy;                ///< requests begun
     KeySet coming;              ///< tiles being read or decoded, for requests or as their ancestors
     KeySet untaken;             ///< delivered, not yet taken
-    KeySet faulty;              ///< never asked for again
+    KeySet lost;                ///< tiles that could not be had
+    KeySet refused;             ///< requests that failed: not taken up again
     std::deque<JobPtr> toRead;  ///< to be read once more
     std::deque<JobPtr> toDecode;
     HostCache cache;
@@ -135,7 +136,7 @@ struct Pager::State {
 
 /// Puts a wanted tile on its way, unless it is so already or never will be.
 void Pager::State::accept(const TileKey& key, bool queuedBefore) {
-    if (busy.contains(key) || untaken.contains(key) || faulty.contains(key)) return;
+    if (busy.contains(key) || untaken.contains(key) || refused.contains(key)) return;
     const auto needs = needsOf(key);
     if (!std::all_of(needs.begin(), needs.end(), [this](const TileKey& need) { return cache.holds(need); })) {
         queue.push_back(key);
@@ -163,7 +164,7 @@ Pager::State::JobPtr Pager::State::nextJob() {
         const TileKey key = *place;
         const auto needs = needsOf(key);
         const auto bad =
-            std::find_if(needs.begin(), needs.end(), [this](const auto& need) { return faulty.contains(need); });
+            std::find_if(needs.begin(), needs.end(), [this](const auto& need) { return lost.contains(need); });
         if (bad != needs.end()) {
             place = queue.erase(place);
             fail(key, describe(key) + " needs " + describe(*bad) + ", which could not be had");
@@ -205,7 +206,7 @@ Pager::State::JobPtr Pager::State::begin(const TileKey& key) {
 }
 
 void Pager::State::fail(const TileKey& key, const std::string& message) {
-    faulty.insert(key);
+    refused.insert(key);
     failed.push_back({key.layer, key.id, message});
     ++count.failed;
     if (isSettled()) settled.notify_all();
@@ -219,9 +220,9 @@ void Pager::State::deliver(LoadedTile tile) {
 
 /// Settles a request: all its parts are there, or one is lost.
 void Pager::State::finish(JobPtr job) {
-    const Part* lost = nullptr;
+    const Part* bad = nullptr;
     for (const Part& part : job->parts) {
-        if (part.lost() && lost == nullptr) lost = &part;
+        if (part.lost() && bad == nullptr) bad = &part;
         if (!part.fetched) continue;
         coming.erase(part.key);
         reserved -= hostBytesOf(part.key);
@@ -230,10 +231,10 @@ void Pager::State::finish(JobPtr job) {
     const uint64_t budget = options.hostBudgetBytes;
     count.evicted += cache.shrinkTo(budget - std::min(budget, reserved));
     busy.erase(job->key);
-    if (lost != nullptr) {
-        faulty.insert(lost->key);
+    if (bad != nullptr) {
+        lost.insert(bad->key);
         fail(job->key,
-             describe(job->key) + " could not be had: " + describe(lost->key) + " was read twice: " + lost->trouble);
+             describe(job->key) + " could not be had: " + describe(bad->key) + " was read twice: " + bad->trouble);
     } else {
         deliver(loadedTile(job->key, job->parts.back().tile, job->imageryChain));
     }
@@ -272,15 +273,15 @@ void Pager::State::decodeLoop() {
         JobPtr job = std::move(toDecode.front());
         toDecode.pop_front();
         lock.unlock();
-        bool complete = true, lost = false;
+        bool complete = true, hopeless = false;
         for (Part& part : job->parts) {
             if (part.payload) decodePart(part);
             complete = complete && part.done();
-            lost = lost || part.lost();
+            hopeless = hopeless || part.lost();
         }
         if (complete && job->key.layer == TileLayer::imagery) job->imageryChain = gatherChain(job->parts);
         lock.lock();
-        if (complete || lost) {
+        if (complete || hopeless) {
             finish(std::move(job));
         } else {
             toRead.push_back(std::move(job));

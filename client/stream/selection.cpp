@@ -108,9 +108,10 @@ Selection Traversal::run() {
 
 Shown Traversal::visit(Cell cell) {
     if (overflowed_) return {};
-    const HeightRange ground = bounds_.surface(cell.ground);
-    if (!frustum_.mayMeet(boxOf(cell.id, {bounds_.wallFoot(cell.ground), ground.max}, tree_.tiling()))) return {};
-    const Metres distance = distanceTo(boxOf(cell.id, ground, tree_.tiling()), view_.eye);
+    const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground)};
+    if (!frustum_.mayMeet(boxOf(cell.id, reach, tree_.tiling()))) return {};
+    const HeightRange own{cell.ground[4].bottom, cell.ground[4].top};
+    const Metres distance = distanceTo(boxOf(cell.id, own, tree_.tiling()), view_.eye);
     chooseHeights(cell, distance);
     chooseImagery(cell, distance);
     if (cell.heights.settled && cell.imagery.settled) return emit(cell, distance);

@@ -17,6 +17,7 @@ Ground groundOf(const HeightRecord& record) {
             .hasHoles = record.hasHoles,
             .low = double{record.minHeight} - record.error,
             .high = double{record.maxHeight} + record.error,
+            .bottom = record.minHeight,
             .top = record.maxHeight};
 }
 
@@ -95,10 +96,6 @@ Neighbourhood GroundBounds::ofChild(const Neighbourhood& parent, const TileId& c
         }
     }
     return nine;
-}
-
-HeightRange GroundBounds::surface(const Neighbourhood& cell) const {
-    return {cell[4].low - margin_, cell[4].high + margin_};
 }
 
 double GroundBounds::wallFoot(const Neighbourhood& cell) const {

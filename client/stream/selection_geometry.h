@@ -49,7 +49,8 @@ struct Ground {
     /// Bounds of the finest samples: the record's heights less and plus its error.
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
-    double top = std::numeric_limits<double>::infinity();  ///< the record's greatest height
+    double bottom = -std::numeric_limits<double>::infinity();  ///< the record's least height
+    double top = std::numeric_limits<double>::infinity();      ///< the record's greatest height
 };
 
 /// A cell and the eight of its size around it, rows from the north: itself is number 4.
@@ -69,13 +70,13 @@ class GroundBounds {
     /// @param deepest  records of deeper levels are not used
     [[nodiscard]] Neighbourhood ofChild(const Neighbourhood& parent, const TileId& child, uint32_t deepest) const;
 
-    /// Every surface that may be drawn in the cell lies between these.
-    [[nodiscard]] HeightRange surface(const Neighbourhood& cell) const;
     /// How far down a cell's walls must reach so that no neighbour's surface lies below them, whatever tile the
     /// neighbour is drawn from: to the lowest finest sample that may lie in the nine squares. Where there are holes,
     /// and at the edge of the ground, down to one floor for the whole dataset: the ground is a solid block.
     [[nodiscard]] double wallFoot(const Neighbourhood& cell) const;
-    /// Bound from above of what a tile of this cell, or one above it, shows in it.
+    /// How high any surface that may be drawn in a cell may reach, its finest samples too.
+    [[nodiscard]] double highest(const Neighbourhood& cell) const { return cell[4].high + margin_; }
+    /// How high a surface in the cell may reach that is drawn from its own tile or one above it.
     [[nodiscard]] double top(const Neighbourhood& cell) const { return cell[4].top + margin_; }
 
   private:

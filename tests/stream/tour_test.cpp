@@ -1,0 +1,143 @@
+// The standard tour works on any dataset and never dives under the ground.
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "client/stream/flight.h"
+#include "client/stream/ground_map.h"
+#include "tests/stream/fake_dataset.h"
+
+namespace terray::test {
+namespace {
+
+/// Finest stored height under a place; lowest when there is none.
+double finestHeight(const FakeDataset& dataset, glm::dvec2 place) {
+    const Tiling& tiling = dataset.metadata.tiling;
+    const double column = std::floor((place.x - tiling.west) / tiling.finestSpacing);
+    const double row = std::floor((tiling.north - place.y) / tiling.finestSpacing);
+    const auto& samples = dataset.metadata.samples;
+    if (column < 0 || row < 0 || column >= static_cast<double>(samples.width) ||
+        row >= static_cast<double>(samples.height))
+        return -1e9;
+    const auto x = static_cast<int64_t>(column), y = static_cast<int64_t>(row);
+    const auto found = dataset.heights.find(
+        {tiling.finestLevel, static_cast<uint32_t>(x / kTileCore), static_cast<uint32_t>(y / kTileCore)});
+    if (found == dataset.heights.end()) return -1e9;
+    const uint16_t code = found->second.codes.at(x % kTileCore + kHeightApron, y % kTileCore + kHeightApron);
+    return code == kNoSurface ? -1e9 : found->second.encoding.height(code);
+}
+
+void expectClear(const FakeDataset& dataset, const Flight& tour) {
+    const auto& size = dataset.metadata.samples;
+    const double extent =
+        static_cast<double>(std::max(size.width, size.height)) * dataset.metadata.tiling.finestSpacing;
+    for (double t = 0; t <= tour.seconds(); t += 1.0 / 30) {
+        const glm::dvec3 eye = tour.at(t).position;
+        ASSERT_TRUE(std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z));
+        ASSERT_GT(eye.z, finestHeight(dataset, glm::dvec2(eye)) + 0.003 * extent) << "at " << t << " s";
+    }
+}
+
+struct Case {
+    const char* name;
+    GridSize samples;
+    double spacing;
+    HeightFormula height;
+};
+
+std::vector<Case> cases() {
+    return {{"200 m of rubble, one tile", {200, 200}, 1, hills(8)},
+            {"30 km of hills", {1000, 1300}, 30, hills(900)},
+            {"5000 km, mostly flat", {1100, 1000}, 5000, hills(4000)},
+            {"a strip", {1500, 60}, 10, hills(200)},
+            {"a plane", {600, 600}, 2, [](int64_t, int64_t) { return -12.0; }},
+            {"a cliff", {700, 700}, 1, [](int64_t x, int64_t y) { return x + 2 * y < 900 ? 0.0 : 400.0; }},
+            {"holes",
+             {900, 900},
+             5,
+             [](int64_t x, int64_t y) { return (x / 64 + y / 64) % 2 == 0 ? NAN : static_cast<double>(x % 50); }},
+            {"one sample", {1, 1}, 10, [](int64_t, int64_t) { return 5.0; }}};
+}
+
+TEST(Tour, StaysClearOfTheGroundEverywhere) {
+    for (const Case& item : cases()) {
+        SCOPED_TRACE(item.name);
+        const FakeDataset dataset = buildDataset(item.height, {.samples = item.samples, .spacing = item.spacing});
+        const Flight tour = standardTour(FakeSource(dataset), 30);
+        EXPECT_DOUBLE_EQ(tour.seconds(), 30);
+        expectClear(dataset, tour);
+    }
+}
+
+TEST(Tour, IsTheSameEachTimeAndOfAnyLength) {
+    const FakeDataset dataset = buildDataset(hills(100), {.samples = {512, 512}});
+    const FakeSource source(dataset);
+    EXPECT_EQ(standardTour(source, 20), standardTour(source, 20));
+    for (const double seconds : {0.5, 3.0, 600.0}) {
+        const Flight tour = standardTour(source, seconds);
+        EXPECT_DOUBLE_EQ(tour.seconds(), seconds);
+        expectClear(dataset, tour);
+    }
+}
+
+TEST(Tour, HasAllItsPhases) {
+    const FakeDataset dataset = buildDataset(hills(300), {.samples = {1024, 1024}, .spacing = 10});
+    const GroundRect ground = dataset.metadata.groundBounds();
+    const double extent = ground.east - ground.west;
+    const Flight tour = standardTour(FakeSource(dataset), 60);
+    bool outside = false, down = false, low = false, edge = false;
+    bool headings[8] = {};
+    for (double t = 0; t <= 60; t += 1.0 / 30) {
+        const Camera camera = tour.at(t);
+        const glm::dvec3 eye = camera.position;
+        const bool within = eye.x > ground.west && eye.x < ground.east && eye.y > ground.south && eye.y < ground.north;
+        const double above = eye.z - finestHeight(dataset, glm::dvec2(eye));
+        outside = outside || (t < 6 && !within && eye.z > dataset.metadata.maxHeight);
+        down = down || camera.pitch.value() < -1.57;
+        const bool isLow = within && above < 0.1 * extent;
+        low = low || (isLow && t < 25 && camera.pitch.value() > -0.3);
+        const double toEdge =
+            std::min({eye.x - ground.west, ground.east - eye.x, eye.y - ground.south, ground.north - eye.y});
+        edge = edge || (isLow && toEdge < 0.01 * extent);
+        if (t > 0.83 * 60 && std::abs(camera.pitch.value()) < 0.1)
+            headings[static_cast<int>(std::floor(std::remainder(camera.heading.value(), 6.2831853) / 0.7854 + 4)) & 7] =
+                true;
+    }
+    EXPECT_TRUE(outside);
+    EXPECT_TRUE(down);
+    EXPECT_TRUE(low);
+    EXPECT_TRUE(edge);
+    EXPECT_TRUE(std::all_of(std::begin(headings), std::end(headings), [](bool seen) { return seen; }));
+}
+
+TEST(Tour, ScalesWithTheExtent) {
+    const FakeDataset small = buildDataset(hills(10), {.samples = {256, 256}, .spacing = 1, .west = 0, .north = 0});
+    const FakeDataset large =
+        buildDataset(hills(10000), {.samples = {256, 256}, .spacing = 1000, .west = 0, .north = 0, .quantum = 10});
+    const Flight a = standardTour(FakeSource(small), 30), b = standardTour(FakeSource(large), 30);
+    const auto length = [](const Flight& flight) {
+        double sum = 0;
+        for (double t = 0; t < 30; t += 0.1) sum += glm::distance(flight.at(t).position, flight.at(t + 0.1).position);
+        return sum;
+    };
+    EXPECT_NEAR(length(b) / length(a), 1000, 50);
+}
+
+TEST(GroundMap, IsNeverBelowTheFinestGround) {
+    const FakeDataset dataset = buildDataset(hills(300), {.samples = {2000, 1500}});
+    const GroundMap map = GroundMap::read(FakeSource(dataset));
+    Random random(7);
+    const GroundRect ground = dataset.metadata.groundBounds();
+    for (int i = 0; i < 20000; ++i) {
+        const glm::dvec2 place(random.uniform(ground.west, ground.east), random.uniform(ground.south, ground.north));
+        ASSERT_GE(map.highestNear(place, 0) + 1e-3, finestHeight(dataset, place));
+    }
+    EXPECT_EQ(map.highestNear({-1e12, 1e12}, 10), map.lowest());
+    EXPECT_EQ(map.highestNear({ground.west, ground.north}, 1e9), map.highest());
+}
+
+}  // namespace
+}  // namespace terray::test

@@ -1,0 +1,161 @@
+// Level jumps are closed: boxes reach below their neighbours' surfaces, and no ray passes through the ground.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+
+#include "client/stream/selection.h"
+#include "tests/stream/views.h"
+
+namespace terray::test {
+namespace {
+
+/// Surface that a node shows at a place of its (closed) square: the column of its height tile there.
+/// @param inward  which column, when the place lies between two: the one towards this side
+std::optional<double> shownHeight(const FakeDataset& dataset, const DrawNode& node, glm::dvec2 place,
+                                  glm::dvec2 inward) {
+    const Tiling& tiling = dataset.metadata.tiling;
+    const HeightTile& tile = dataset.heights.at(node.heightTile);
+    const GroundRect square = tiling.bounds(node.heightTile);
+    const double spacing = tiling.spacing(node.heightTile.level);
+    const glm::dvec2 inside = place + 1e-3 * tiling.finestSpacing * inward;
+    const auto column = static_cast<int64_t>(std::floor((inside.x - square.west) / spacing));
+    const auto row = static_cast<int64_t>(std::floor((square.north - inside.y) / spacing));
+    const uint16_t code = tile.codes.at(column + kHeightApron, row + kHeightApron);
+    if (code == kNoSurface) return {};
+    return tile.encoding.height(code);
+}
+
+bool contains(const GroundRect& square, glm::dvec2 place) {
+    return place.x >= square.west && place.x <= square.east && place.y >= square.south && place.y <= square.north;
+}
+
+TEST(Walls, ReachBelowWhateverANeighbourShowsAtTheSharedBorder) {
+    const FakeDataset& dataset = hillyDataset();
+    const Tiling& tiling = dataset.metadata.tiling;
+    Random random(4);
+    int checked = 0;
+    for (int round = 0; round < 60; ++round) {
+        const TileTree tree = randomTree(dataset, random);
+        const auto nodes = select(tree, randomView(dataset, random), {}).nodes;
+        for (const DrawNode& node : nodes) {
+            const GroundRect square = tiling.bounds(node.cell);
+            for (double along = 0.25; along < square.east - square.west; along += 1) {
+                const glm::dvec2 borders[] = {{square.west, square.south + along},
+                                              {square.east, square.south + along},
+                                              {square.west + along, square.south},
+                                              {square.west + along, square.north}};
+                const glm::dvec2 outward[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+                for (int side = 0; side < 4; ++side) {
+                    for (const DrawNode& other : nodes) {
+                        if (other.cell == node.cell || !contains(tiling.bounds(other.cell), borders[side])) continue;
+                        const auto shown = shownHeight(dataset, other, borders[side], outward[side]);
+                        ++checked;
+                        ASSERT_LT(node.minHeight, shown.value_or(1e9)) << node.cell << " beside " << other.cell;
+                    }
+                }
+                along += node.cell.level < 3 ? 6 : 0;  // every column of small cells, some of large ones
+            }
+        }
+    }
+    EXPECT_GT(checked, 10000);
+}
+
+TEST(Walls, BoxesHoldTheSurfaceThatIsDrawn) {
+    const FakeDataset& dataset = hillyDataset();
+    const Tiling& tiling = dataset.metadata.tiling;
+    Random random(5);
+    for (int round = 0; round < 100; ++round) {
+        const TileTree tree = randomTree(dataset, random);
+        for (const DrawNode& node : select(tree, randomView(dataset, random), {}).nodes) {
+            const GroundRect square = tiling.bounds(node.cell);
+            for (int sample = 0; sample < 50; ++sample) {
+                const glm::dvec2 place(random.uniform(square.west, square.east),
+                                       random.uniform(square.south, square.north));
+                const auto height = shownHeight(dataset, node, place, {0, 0});
+                ASSERT_TRUE(height.has_value());
+                ASSERT_LT(node.minHeight, *height);
+                ASSERT_GE(node.maxHeight + 1e-9, *height);
+            }
+        }
+    }
+}
+
+/// Whether a ray hits a node's solid columns, walking them one by one: the renderer's task, done plainly.
+bool hits(const FakeDataset& dataset, const DrawNode& node, const View& view, glm::dvec3 ray) {
+    const Tiling& tiling = dataset.metadata.tiling;
+    const GroundRect cell = tiling.bounds(node.cell);
+    double enter = 0, leave = 1e9;
+    const auto cut = [&](double eye, double direction, double low, double high) {
+        const double a = (low - eye) / direction, b = (high - eye) / direction;
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    };
+    cut(view.eye.x, ray.x, cell.west, cell.east);
+    cut(view.eye.y, ray.y, cell.south, cell.north);
+    cut(view.eye.z, ray.z, node.minHeight, node.maxHeight);
+    const double spacing = tiling.spacing(node.heightTile.level);
+    for (double t = enter; t < leave;) {
+        // The next column border along either axis.
+        double next = leave;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double origin = axis == 0 ? tiling.west : tiling.north;
+            const double steps = (view.eye[axis] + (t + 1e-9) * ray[axis] - origin) / spacing;
+            const double border = origin + (ray[axis] > 0 ? std::floor(steps) + 1 : std::ceil(steps) - 1) * spacing;
+            next = std::min(next, (border - view.eye[axis]) / ray[axis]);
+        }
+        next = std::max(next, t + 1e-7);
+        const glm::dvec3 middle = view.eye + (t + next) / 2 * ray;
+        const glm::dvec2 inside = glm::clamp(glm::dvec2(middle), glm::dvec2(cell.west, cell.south) + 1e-6,
+                                             glm::dvec2(cell.east, cell.north) - 1e-6);
+        const auto height = shownHeight(dataset, node, inside, {0, 0});
+        const double lowest = std::min(view.eye.z + t * ray.z, view.eye.z + std::min(next, leave) * ray.z);
+        if (height && lowest <= *height) return true;
+        t = next;
+    }
+    return false;
+}
+
+TEST(Walls, NoRayThatEntersTheGroundPassesThroughIt) {
+    const FakeDataset& dataset = hillyDataset();
+    const GroundRect ground = dataset.metadata.groundBounds();
+    const double low = dataset.metadata.minHeight;
+    Random random(6);
+    int rays = 0;
+    for (int round = 0; round < 1500; ++round) {
+        const TileTree tree = randomTree(dataset, random);
+        const View view = randomView(dataset, random);
+        const auto nodes = select(tree, view, {}).nodes;
+        for (int sample = 0; sample < 40; ++sample) {
+            const glm::dvec3 ray = view.direction(random.uniform(0, view.width), random.uniform(0, view.height));
+            // It must hit if it is inside the ground's outline where it is as low as the lowest sample.
+            if (ray.z >= 0) continue;
+            const glm::dvec3 bottom = view.eye + (low - view.eye.z) / ray.z * ray;
+            if (!contains(ground, glm::dvec2(bottom))) continue;
+            ++rays;
+            const bool hit = std::any_of(nodes.begin(), nodes.end(),
+                                         [&](const DrawNode& node) { return hits(dataset, node, view, ray); });
+            ASSERT_TRUE(hit) << "round " << round << " sample " << sample;
+        }
+    }
+    EXPECT_GT(rays, 3000);
+}
+
+TEST(Walls, AtTheEdgeAndAtHolesReachOneFloor) {
+    const FakeDataset dataset = buildDataset(
+        [](int64_t x, int64_t y) { return x > 700 && y > 700 && x < 720 ? NAN : 50 + static_cast<double>(x % 7); },
+        {.samples = {1024, 1024}});
+    const TileTree tree = everything(dataset);
+    const View view =
+        viewOf({.position = {1500, 4500, 500}, .heading = {}, .pitch = Radians(-1.5707963267948966)}, 1000, 1000);
+    const auto nodes = select(tree, view, {.tolerance = Pixels(1e-6)}).nodes;
+    ASSERT_EQ(nodes.size(), 4u);
+    for (const DrawNode& node : nodes) EXPECT_EQ(node.minHeight, nodes[0].minHeight) << node.cell;
+    EXPECT_LT(nodes[0].minHeight, dataset.metadata.minHeight);
+}
+
+}  // namespace
+}  // namespace terray::test
