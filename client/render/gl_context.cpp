@@ -78,7 +78,7 @@ std::vector<Candidate> candidates(std::string& report) {
     const char* const extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     std::vector<Candidate> found;
     if (!listHas(extensions, "EGL_EXT_platform_base")) {
-        report += "\n  this EGL has no platform displays (EGL_EXT_platform_base)";
+        report += "\n  EGL has no driver, or none with platform displays (EGL_EXT_platform_base)";
         return found;
     }
     // Older drivers name the two parts of EGL_EXT_device_base by one extension.

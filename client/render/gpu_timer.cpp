@@ -24,7 +24,8 @@ std::array<double, kGpuPasses> GpuTimer::finishFrame() {
     GLuint64 after = nanoseconds(end);
     for (size_t i = marks_.size(); i-- > 0;) {
         const GLuint64 before = nanoseconds(marks_[i].query);
-        milliseconds[static_cast<size_t>(marks_[i].pass)] += static_cast<double>(after - before) * 1e-6;
+        milliseconds[static_cast<size_t>(marks_[i].pass)] +=
+            static_cast<double>(static_cast<GLint64>(after - before)) * 1e-6;
         after = before;
     }
     marks_.clear();

@@ -54,54 +54,50 @@ class Resolver {
     using Source = std::function<Result<std::string>(const std::string&)>;
     explicit Resolver(Source source) : source_(std::move(source)) {}
 
-    /// Appends a file and everything it includes. Nothing: success.
-    std::optional<Failure> add(const std::string& name) {
+    /// Appends a line of text.
+    void addLine(std::string_view content, ResolvedShader::Origin origin) {
+        shader.text.append(content);
+        shader.text += '\n';
+        shader.origins.push_back(origin);
+    }
+    /// Appends a file and everything it includes.
+    Result<void> addFile(const std::string& name) {
         const Result<std::string> text = source_(name);
         if (!text.ok()) return text.failure();
         const size_t number = shader.files.size();
         shader.files.push_back(name);
         open_.push_back(name);
-        mark(1, number);
-        std::optional<Failure> failure;
+        Result<void> result;
         forEachLine(text.value(), [&](int line, std::string_view content) {
-            if (failure) return;
-            const std::optional<Include> include = parseInclude(content);
-            if (!include) {
-                shader.text.append(content);
-                shader.text += '\n';
-                return;
+            if (!result.ok()) return;
+            if (const std::optional<Include> include = parseInclude(content)) {
+                result = addInclude(*include, "shaders/" + name + ":" + std::to_string(line));
+            } else {
+                addLine(content, {number, line});
             }
-            failure = addInclude(*include, "shaders/" + name + ":" + std::to_string(line));
-            mark(line + 1, number);
         });
         open_.pop_back();
-        return failure;
+        return result;
     }
 
     ResolvedShader shader;
 
   private:
-    std::optional<Failure> addInclude(const Include& include, const std::string& where) {
+    Result<void> addInclude(const Include& include, const std::string& where) {
         if (include.foreign) return {};
         const auto refuse = [&](const std::string& why) {
             return Failure{where + ": cannot include \"" + include.name + "\": " + why};
         };
-        if (std::find(open_.begin(), open_.end(), include.name) != open_.end()) {
-            return refuse("it includes this file (a cycle)");
-        }
-        if (std::find(shader.files.begin(), shader.files.end(), include.name) != shader.files.end()) return {};
+        if (std::ranges::count(open_, include.name) > 0) return refuse("it includes this file (a cycle)");
+        if (std::ranges::count(shader.files, include.name) > 0) return {};
         if (open_.size() > kMaxIncludeDepth) {
             return refuse("more than " + std::to_string(kMaxIncludeDepth) + " files within each other");
         }
         const size_t before = shader.files.size();
-        std::optional<Failure> failure = add(include.name);
+        Result<void> result = addFile(include.name);
         // Its own source is missing: say who asked. Deeper faults name their own line.
-        if (failure && shader.files.size() == before) return refuse(failure->message);
-        return failure;
-    }
-    /// The next line is `line` of file `number`.
-    void mark(int line, size_t number) {
-        shader.text += "#line " + std::to_string(line) + " " + std::to_string(number) + "\n";
+        if (!result.ok() && shader.files.size() == before) return refuse(result.failure().message);
+        return result;
     }
 
     Source source_;
@@ -110,60 +106,31 @@ class Resolver {
 
 /// A line of a driver's log that speaks of a line of a shader.
 struct LogLine {
-    size_t file = 0;
-    int line = 0;
+    size_t line = 0;  ///< from 1
     std::string message;
 };
 
-std::optional<LogLine> parseLogLine(std::string_view text, size_t files) {
-    static const std::regex kMesa(R"((\d{1,9}):(\d{1,9})\(\d+\)\s*:\s*(.*))");
-    static const std::regex kNvidia(R"((\d{1,9})\((\d{1,9})\)\s*:\s*(.*))");
-    static const std::regex kOthers(R"((ERROR|WARNING):\s*(\d{1,9}):(\d{1,9}):\s*(.*))");
+std::optional<LogLine> parseLogLine(std::string_view text) {
+    // Nine digits fit any number type; no shader has more lines.
+    static const std::regex kMesa(R"(\d+:(\d{1,9})\(\d+\)\s*:\s*(.*))");
+    static const std::regex kNvidia(R"(\d+\((\d{1,9})\)\s*:\s*(.*))");
+    static const std::regex kOthers(R"((ERROR|WARNING):\s*\d+:(\d{1,9}):\s*(.*))");
     std::match_results<std::string_view::const_iterator> match;
-    LogLine found;
-    const std::string_view line = trimmed(text);
     const auto matches = [&](const std::regex& form) {
-        return std::regex_match(line.begin(), line.end(), match, form);
+        return std::regex_match(text.begin(), text.end(), match, form);
     };
-    if (matches(kMesa) || matches(kNvidia)) {
-        found = {std::stoul(match[1]), std::stoi(match[2]), match[3]};
-    } else if (matches(kOthers)) {
-        found = {std::stoul(match[2]), std::stoi(match[3]),
-                 (match[1] == "ERROR" ? "error: " : "warning: ") + match[4].str()};
-    } else {
-        return {};
-    }
-    if (found.file >= files) return {};
-    return found;
+    if (matches(kMesa) || matches(kNvidia)) return LogLine{std::stoul(match[1]), match[2]};
+    if (!matches(kOthers)) return {};
+    return LogLine{std::stoul(match[2]), (match[1] == "ERROR" ? "error: " : "warning: ") + match[3].str()};
 }
 
 /// Line `number` of a text, from 1; empty when there is none.
-std::string lineOf(std::string_view text, int number) {
-    std::string found;
+std::string_view lineOf(std::string_view text, size_t number) {
+    std::string_view found;
     forEachLine(text, [&](int at, std::string_view line) {
-        if (at == number) found = trimmed(line);
+        if (static_cast<size_t>(at) == number) found = trimmed(line);
     });
     return found;
-}
-
-/// Rewrites a log; `source` may give a file's text, of which the line is then repeated below the message.
-std::string mapLog(std::string_view log, const std::vector<std::string>& files, const Resolver::Source& source) {
-    std::string mapped;
-    forEachLine(log, [&](int, std::string_view text) {
-        if (trimmed(text).empty() || text == std::string_view("\0", 1)) return;
-        const std::optional<LogLine> line = parseLogLine(text, files.size());
-        if (!line) {
-            mapped.append(text);
-            mapped += '\n';
-            return;
-        }
-        const std::string& file = files[line->file];
-        mapped += "shaders/" + file + ":" + std::to_string(line->line) + ": " + line->message + "\n";
-        if (!source) return;
-        const Result<std::string> content = source(file);
-        if (content.ok()) mapped += "    " + lineOf(content.value(), line->line) + "\n";
-    });
-    return mapped;
 }
 
 GLenum stageOf(const std::string& name) {
@@ -222,9 +189,10 @@ Result<std::string> ShaderLibrary::source(const std::string& name) const {
 
 Result<ResolvedShader> ShaderLibrary::resolve(const std::string& name, const ShaderDefines& defines) const {
     Resolver resolver([this](const std::string& file) { return source(file); });
-    resolver.shader.text = "#version 450 core\n";
-    for (const auto& [key, value] : defines) resolver.shader.text += "#define " + key + " " + value + "\n";
-    if (std::optional<Failure> failure = resolver.add(name)) return *failure;
+    resolver.addLine("#version 450 core", {});
+    for (const auto& [key, value] : defines) resolver.addLine("#define " + key + " " + value, {});
+    const Result<void> result = resolver.addFile(name);
+    if (!result.ok()) return result.failure();
     return std::move(resolver.shader);
 }
 
@@ -245,15 +213,14 @@ Result<GlProgram> ShaderLibrary::build(const std::vector<std::string>& names, co
         GLint compiled = GL_FALSE;
         glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
         if (compiled != GL_TRUE) {
-            return failed(mapLog(shaderLog(shader.name()), resolved->files,
-                                 [this](const std::string& file) { return source(file); }));
+            return failed(mapShaderLog(shaderLog(shader.name()), resolved.value()));
         }
         glAttachShader(program.name(), shader.name());  // keeps it alive as long as the program
     }
     glLinkProgram(program.name());
     GLint linked = GL_FALSE;
     glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
-    // A linker's source numbers do not say of which stage they are, so its words are passed on as they are.
+    // A linker's line numbers do not say of which stage they are, so its words are passed on as they are.
     if (linked != GL_TRUE) return failed(programLog(program.name()));
     return program;
 }
@@ -264,8 +231,22 @@ GlProgram ShaderLibrary::require(const std::vector<std::string>& names, const Sh
     return std::move(program).value();
 }
 
-std::string mapShaderLog(std::string_view log, const std::vector<std::string>& files) {
-    return mapLog(log, files, {});
+std::string mapShaderLog(std::string_view log, const ResolvedShader& shader) {
+    std::string mapped;
+    // Some drivers count the terminating zero as part of the log.
+    forEachLine(log.substr(0, log.find('\0')), [&](int, std::string_view text) {
+        const std::optional<LogLine> found = parseLogLine(trimmed(text));
+        if (!found || found->line == 0 || found->line > shader.origins.size()) {
+            mapped.append(text);
+            mapped += '\n';
+            return;
+        }
+        const auto& [file, line] = shader.origins[found->line - 1];
+        mapped += "shaders/" + shader.files[file] + ":" + std::to_string(line) + ": " + found->message + "\n    ";
+        mapped.append(lineOf(shader.text, found->line));
+        mapped += '\n';
+    });
+    return mapped;
 }
 
 }  // namespace terray

@@ -17,8 +17,14 @@ using ShaderDefines = std::map<std::string, std::string>;
 
 /// The text of one shader after its includes were resolved.
 struct ResolvedShader {
-    std::string text;  ///< starts with #version 450 core, then the defines, then the source with #line marks
-    std::vector<std::string> files;  ///< in the order of their #line source numbers; files[0] is the root
+    /// Where a line comes from.
+    struct Origin {
+        size_t file = 0;  ///< index into files
+        int line = 0;     ///< from 1; 0: one of the lines put before the root, such as a define
+    };
+    std::string text;                ///< #version 450 core, then the defines, then the sources
+    std::vector<std::string> files;  ///< in the order in which they were first included; files[0] is the root
+    std::vector<Origin> origins;     ///< of each line of text
 };
 
 /// Shader sources by name relative to shaders/, such as "march.frag". Compiled into the program at build time; a
@@ -49,7 +55,10 @@ class ShaderLibrary {
 };
 
 /// Rewrites driver messages such as "0:12(5): error: ..." (Mesa), "0(12) : error ..." (NVIDIA), "ERROR: 0:12: ..." to
-/// "shaders/<file>:12: ..." by the source numbers of `files`.
-[[nodiscard]] std::string mapShaderLog(std::string_view log, const std::vector<std::string>& files);
+/// "shaders/<file>:<line>: ...", with that line below, and leaves other lines as they are.
+///
+/// By line number alone: resolved text carries no #line, because Mesa's compiler forgets the source number that #line
+/// sets (22.3.6 reports most errors as of source 0).
+[[nodiscard]] std::string mapShaderLog(std::string_view log, const ResolvedShader& shader);
 
 }  // namespace terray
