@@ -172,6 +172,7 @@ class HeightOpener {
             throw Error(ExitCode::georeference, what + ". Give the metres between its samples: --spacing METRES");
         if (rasters_.size() > 1) throw Error(ExitCode::georeference, what + ", so it cannot be part of a mosaic");
         raster.geoTransform = {0, *options_.spacing, 0, 0, 0, -*options_.spacing};
+        raster.isPlacedHere = true;
     }
 
     /// Each file as 32-bit floats with NaN for nodata; files that share a grid side by side.
@@ -187,16 +188,9 @@ class HeightOpener {
     }
 
     std::string floatRaster(const RasterFacts& raster) {
-        std::vector<std::string> arguments{"-b", "1", "-ot", "Float32"};
-        const auto add = [&](std::initializer_list<std::string> more) {
-            arguments.insert(arguments.end(), more.begin(), more.end());
-        };
-        if (options_.nodata) add({"-a_nodata", exactText(*options_.nodata)});
-        if (!raster.crs.wkt.empty()) add({"-a_srs", raster.crs.wkt});
-        if (squareGrid(*raster.geoTransform, raster.size)) {
-            const GroundRect area = squareGrid(*raster.geoTransform, raster.size)->bounds();
-            add({"-a_ullr", exactText(area.west), exactText(area.north), exactText(area.east), exactText(area.south)});
-        }
+        std::vector<std::string> arguments = placeArguments(raster);
+        arguments.insert(arguments.end(), {"-b", "1", "-ot", "Float32"});
+        if (options_.nodata) arguments.insert(arguments.end(), {"-a_nodata", exactText(*options_.nodata)});
         return keep(gdal::translate(raster.name, arguments));
     }
 

@@ -123,6 +123,7 @@ class PhotoOpener {
             photo.geoTransform = {area.west, (area.east - area.west) / static_cast<double>(photo.size.width),
                                   0,         area.north,
                                   0,         (area.south - area.north) / static_cast<double>(photo.size.height)};
+            photo.isPlacedHere = true;
         }
         // Nothing can be transformed to or from an unnamed plane: both are then taken to lie in the same one.
         if (photo.crs.wkt.empty() || ground_.crsWkt.empty()) {
@@ -164,25 +165,16 @@ class PhotoOpener {
             bands = {"-b", "1", "-b", "2", "-b", "3"};
         }
         std::vector<std::string> arguments = bands;
-        arguments.insert(arguments.end(), {"-b", "mask", "-colorinterp", "red,green,blue,alpha", "-ot", "Byte"});
+        arguments.insert(arguments.end(), {"-b", "mask", "-ot", "Byte"});
         if (photo.bits != 8) {
             const std::string brightest = std::to_string((1 << photo.bits) - 1);
             for (const char* band : {"-scale_1", "-scale_2", "-scale_3"})
                 arguments.insert(arguments.end(), {band, "0", brightest, "0", "255"});
         }
         arguments.insert(arguments.end(), place.begin(), place.end());
-        return keep(gdal::translate(source, arguments));
-    }
-
-    static std::vector<std::string> placeArguments(const RasterFacts& photo) {
-        std::vector<std::string> arguments;
-        const GeoTransform& transform = *photo.geoTransform;
-        if (isNorthUp(transform))
-            arguments = {"-a_ullr", exactText(transform[0]), exactText(transform[3]),
-                         exactText(transform[0] + static_cast<double>(photo.size.width) * transform[1]),
-                         exactText(transform[3] + static_cast<double>(photo.size.height) * transform[5])};
-        if (!photo.crs.wkt.empty()) arguments.insert(arguments.end(), {"-a_srs", photo.crs.wkt});
-        return arguments;
+        // A mask taken as a band gets its meaning only in a second step.
+        return keep(
+            gdal::translate(keep(gdal::translate(source, arguments)), {"-colorinterp", "red,green,blue,alpha"}));
     }
 
     /// Where the groups lie, what of the ground they cover, and the level that the finest of them asks for.

@@ -220,15 +220,39 @@ struct Point {
     double y = 0;
 };
 
-Point placeOf(void* transformer, Point pixel) {
-    double z = 0;
-    int succeeded = FALSE;
-    GDALGenImgProjTransform(transformer, FALSE, 1, &pixel.x, &pixel.y, &z, &succeeded);
-    if (succeeded == FALSE || !std::isfinite(pixel.x) || !std::isfinite(pixel.y))
-        refusePlace(
-            "cannot transform the raster's centre: it lies outside the area where the coordinate systems are defined"
-            " (choose another with --crs)");
-    return pixel;
+/// Places of pixels, and only of those that have one.
+std::vector<Point> placesOf(void* transformer, const std::vector<Point>& pixels) {
+    std::vector<Point> places;
+    for (Point point : pixels) {
+        double z = 0;
+        int succeeded = FALSE;
+        GDALGenImgProjTransform(transformer, FALSE, 1, &point.x, &point.y, &z, &succeeded);
+        if (succeeded != FALSE && std::isfinite(point.x) && std::isfinite(point.y)) places.push_back(point);
+    }
+    return places;
+}
+
+/// Pixels all over a raster, and densely along its outline, which another system bends: between two of them an arc that
+/// turns by 60 degrees in all bulges by 1e-5 of its length.
+std::vector<Point> outlineOf(GDALDataset& dataset) {
+    constexpr int kSteps = 100;
+    constexpr int kInnerStep = 5;
+    std::vector<Point> pixels;
+    for (int i = 0; i <= kSteps; ++i)
+        for (int j = 0; j <= kSteps; ++j) {
+            const bool isOutline = i == 0 || i == kSteps || j == 0 || j == kSteps;
+            if (!isOutline && (i % kInnerStep != 0 || j % kInnerStep != 0)) continue;
+            pixels.push_back({dataset.GetRasterXSize() * (static_cast<double>(i) / kSteps),
+                              dataset.GetRasterYSize() * (static_cast<double>(j) / kSteps)});
+        }
+    return pixels;
+}
+
+[[noreturn]] void refuseCentre(const Messages& messages) {
+    refusePlace(
+        "cannot place the raster: its centre lies where the coordinate system is not defined; choose another with "
+        "--crs (" +
+        messages.text() + ")");
 }
 
 std::string nextVirtualName() {
@@ -351,28 +375,27 @@ Footprint footprint(const std::string& raster, const std::string& crsWkt) {
     const Messages messages;
     const GDALDatasetUniquePtr dataset = openSource(raster, messages);
     const Transformer transformer = transformerTo(*dataset, crsWkt, messages);
-    GeoTransform suggested{};
-    std::array<double, 4> extent{};
-    int width = 0;
-    int height = 0;
-    if (GDALSuggestedWarpOutput2(GDALDataset::ToHandle(dataset.get()), GDALGenImgProjTransform, transformer.get(),
-                                 suggested.data(), &width, &height, extent.data(), 0) != CE_None)
-        refusePlace("cannot place the raster in the chosen coordinate system: " + messages.text());
     const Point middle{dataset->GetRasterXSize() / 2.0, dataset->GetRasterYSize() / 2.0};
-    const Point here = placeOf(transformer.get(), middle);
-    const Point along = placeOf(transformer.get(), {middle.x + 1, middle.y});
-    const Point down = placeOf(transformer.get(), {middle.x, middle.y + 1});
-    return {.extent = {extent[0], extent[1], extent[2], extent[3]},
-            .finestSpacing =
-                std::min(std::hypot(along.x - here.x, along.y - here.y), std::hypot(down.x - here.x, down.y - here.y))};
+    const std::vector<Point> steps =
+        placesOf(transformer.get(), {middle, {middle.x + 1, middle.y}, {middle.x, middle.y + 1}});
+    if (steps.size() < 3) refuseCentre(messages);
+    const Point& here = steps.front();
+    const auto stepTo = [&](const Point& there) { return std::hypot(there.x - here.x, there.y - here.y); };
+    Footprint result{.extent = {here.x, here.y, here.x, here.y},
+                     .finestSpacing = std::min(stepTo(steps[1]), stepTo(steps[2]))};
+    for (const Point& place : placesOf(transformer.get(), outlineOf(*dataset)))
+        result.extent = unionOf(result.extent, {place.x, place.y, place.x, place.y});
+    return result;
 }
 
 LonLat centre(const std::string& raster) {
     const Messages messages;
     const GDALDatasetUniquePtr dataset = openSource(raster, messages);
     const Transformer transformer = transformerTo(*dataset, "EPSG:4326", messages);
-    const Point place = placeOf(transformer.get(), {dataset->GetRasterXSize() / 2.0, dataset->GetRasterYSize() / 2.0});
-    return {.longitude = std::remainder(place.x, 360.0), .latitude = place.y};
+    const std::vector<Point> places =
+        placesOf(transformer.get(), {{dataset->GetRasterXSize() / 2.0, dataset->GetRasterYSize() / 2.0}});
+    if (places.empty()) refuseCentre(messages);
+    return {.longitude = std::remainder(places.front().x, 360.0), .latitude = places.front().y};
 }
 
 std::optional<GroundRect> lonLatBounds(const GroundRect& area, const std::string& crsWkt) {

@@ -20,6 +20,7 @@ struct RasterFacts {
     std::string name;                          ///< what GDAL opens: the file, or the one grid inside it
     GridSize size;                             ///< both > 0
     std::optional<GeoTransform> geoTransform;  ///< none: the file does not say where it lies
+    bool isPlacedHere = false;                 ///< geoTransform was given by Terray: GDAL has to be told
     Crs crs;                                   ///< wkt is empty when the file names none
     std::vector<int> colourBands;              ///< numbers of red, green, blue; of one grey band three times
     bool isInteger = false;                    ///< type of the first band, as are the following

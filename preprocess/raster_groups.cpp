@@ -52,6 +52,17 @@ std::string exactText(double value) {
     return text.data();
 }
 
+std::vector<std::string> placeArguments(const gdal::RasterFacts& raster) {
+    std::vector<std::string> arguments;
+    const GeoTransform& transform = *raster.geoTransform;
+    if (raster.isPlacedHere)
+        arguments = {"-a_ullr", exactText(transform[0]), exactText(transform[3]),
+                     exactText(transform[0] + static_cast<double>(raster.size.width) * transform[1]),
+                     exactText(transform[3] + static_cast<double>(raster.size.height) * transform[5])};
+    if (!raster.crs.wkt.empty()) arguments.insert(arguments.end(), {"-a_srs", raster.crs.wkt});
+    return arguments;
+}
+
 std::vector<std::string> gridArguments(const SquareGrid& grid, const std::string& crsWkt) {
     const GroundRect area = grid.bounds();
     std::vector<std::string> arguments{"-te",

@@ -26,6 +26,9 @@ struct RasterGroup {
 /// A number as text that reads back as the same number.
 [[nodiscard]] std::string exactText(double value);
 
+/// gdal_translate's options that give a raster the place and the system it has here.
+[[nodiscard]] std::vector<std::string> placeArguments(const gdal::RasterFacts& raster);
+
 /// gdalwarp's options for an exact target: system, outline, columns and rows. Reads no overviews, whose samples are
 /// other people's averages.
 [[nodiscard]] std::vector<std::string> gridArguments(const SquareGrid& grid, const std::string& crsWkt);

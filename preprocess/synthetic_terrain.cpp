@@ -23,17 +23,18 @@ struct Gradient {
     float y;
 };
 
-/// One of eight directions, all of length 1 up to rounding.
+/// One of eight directions of length 1 (up to rounding), none along an axis, where the lattice would show.
 Gradient gradientAt(int64_t x, int64_t y, uint64_t channel, uint64_t seed) {
-    constexpr float kDiagonal = 0.70710678f;
-    static constexpr std::array<Gradient, 8> kDirections{{{1, 0},
-                                                          {-1, 0},
-                                                          {0, 1},
-                                                          {0, -1},
-                                                          {kDiagonal, kDiagonal},
-                                                          {-kDiagonal, kDiagonal},
-                                                          {kDiagonal, -kDiagonal},
-                                                          {-kDiagonal, -kDiagonal}}};
+    constexpr float kCosine = 0.92387953f;  // of 22.5 degrees
+    constexpr float kSine = 0.38268343f;
+    static constexpr std::array<Gradient, 8> kDirections{{{kCosine, kSine},
+                                                          {kSine, kCosine},
+                                                          {-kSine, kCosine},
+                                                          {-kCosine, kSine},
+                                                          {-kCosine, -kSine},
+                                                          {-kSine, -kCosine},
+                                                          {kSine, -kCosine},
+                                                          {kCosine, -kSine}}};
     return kDirections[hashPlace(x, y, channel, seed) >> 61];
 }
 
@@ -75,6 +76,11 @@ void TerrainFunction::noise(int64_t x, int64_t y, int64_t step, int octave, std:
     const int64_t period = int64_t{1} << periodLog2;
     const float perPeriod = 1.0f / static_cast<float>(period);  // a power of two: exact
     const auto channel = static_cast<uint64_t>(octave + 1);
+    // Each octave's lattice is shifted by its own part of a period, so that their lines, where noise is 0, do not
+    // coincide.
+    const uint64_t shift = hashPlace(0, 0, channel, ~seed_);
+    x += static_cast<int64_t>(shift >> 32) & (period - 1);
+    y += static_cast<int64_t>(shift & 0xffffffff) & (period - 1);
     const int64_t cellY = y >> periodLog2;
     const float v = static_cast<float>(y - (cellY << periodLog2)) * perPeriod;
     const float fadeV = fade(v);
