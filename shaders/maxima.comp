@@ -1,7 +1,7 @@
-// Maximum mipmap of one height tile (paper 001, section 3.2): up to five levels from the one below them, in one dispatch.
+// Maximum mipmap of one height tile (paper 001, section 3.2): up to five levels from the one below, in one dispatch.
 // A thread reduces 4 x 4 source texels by itself (levels 1 and 2 above the source), its 8 x 8 group the rest through
-// shared memory (levels 3, 4, 5). From the codes' 512 x 512 core, 16 x 16 groups build levels 1..5; one more group builds
-// 6..9 from level 5. Constants: kCore and kApron come from common/tiling.h as defines.
+// shared memory (levels 3, 4, 5). From the codes' 512 x 512 core, 16 x 16 groups build levels 1..5; one more group
+// builds 6..9 from level 5. TERRAY_TILE_CORE and TERRAY_HEIGHT_APRON come from common/tiling.h.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform usampler2DArray heightCodes;
