@@ -1,5 +1,9 @@
 #include "preprocess/verify_dataset.h"
 
+#include <algorithm>
+#include <string>
+#include <unordered_set>
+
 #include "common/error.h"
 #include "preprocess/dataset_builder.h"
 #include "preprocess/verify_faults.h"
@@ -16,15 +20,26 @@ void verifyMetadata(const DatasetMetadata& metadata, FaultList& faults) {
 
 }  // namespace
 
-std::vector<TileId> listTiles(const PmtilesReader& archive) {
-    std::vector<TileId> tiles;
-    const auto listed = archive.forEach([&](const TileId& id, uint64_t, uint32_t) { tiles.push_back(id); });
+TileList listTiles(const PmtilesReader& archive) {
+    TileList list;
+    std::unordered_set<uint64_t> offsets;
+    uint64_t nextInRun = 0;
+    uint64_t runOffset = 0;
+    const auto listed = archive.forEach([&](const TileId& id, uint64_t offset, uint32_t) {
+        const uint64_t hilbert = hilbertId(id);
+        if (list.tiles.empty() || hilbert != nextInRun || offset != runOffset) ++list.entries;
+        nextInRun = hilbert + 1;
+        runOffset = offset;
+        offsets.insert(offset);
+        list.tiles.push_back(id);
+    });
     if (!listed.ok()) throw Error(ExitCode::dataset, listed.failure().message);
-    return tiles;
+    list.contents = offsets.size();
+    return list;
 }
 
-void verifyHeader(const DatasetArchives& dataset, const PmtilesReader& archive, uint32_t finestLevel, uint64_t tiles,
-                  FaultList& faults) {
+void verifyHeader(const DatasetArchives& dataset, const PmtilesReader& archive, uint32_t finestLevel,
+                  const TileList& list, FaultList& faults) {
     const PmtilesHeader& found = archive.header();
     const std::string name = archive.source().name();
     // Through the coding, since degrees are stored in steps of 1e-7.
@@ -43,8 +58,18 @@ void verifyHeader(const DatasetArchives& dataset, const PmtilesReader& archive, 
             "the header's centre is not that of the bounds");
     require(found.tileType == 0 && found.tileCompression == PmtilesCompression::none,
             "the header's tile type or tile compression is not that of Terray's tiles");
-    require(found.addressedTiles == tiles, "the header counts " + std::to_string(found.addressedTiles) +
-                                               " tiles, the directories list " + std::to_string(tiles));
+    require(found.rootOffset == kPmtilesHeaderBytes && found.metadataOffset == found.rootOffset + found.rootLength &&
+                found.leavesOffset == found.metadataOffset + found.metadataLength &&
+                found.tilesOffset == found.leavesOffset + found.leavesLength &&
+                archive.source().size() == found.tilesOffset + found.tilesLength,
+            "the header's sections do not follow each other to the end of the file");
+    require(found.clustered, "the header does not say that tiles lie in the order of their ids");
+    require(found.addressedTiles == list.tiles.size() && found.tileEntries == list.entries &&
+                found.tileContents == list.contents,
+            "the header counts " + std::to_string(found.addressedTiles) + " tiles, " +
+                std::to_string(found.tileEntries) + " entries and " + std::to_string(found.tileContents) +
+                " contents, the directories " + std::to_string(list.tiles.size()) + ", " +
+                std::to_string(list.entries) + " and " + std::to_string(list.contents));
 }
 
 VerifyReport verifyDataset(const DatasetArchives& dataset, int jobs, const std::atomic<bool>& stop) {

@@ -50,10 +50,16 @@ uint64_t verifyHeights(const DatasetArchives& dataset, int jobs, const std::atom
 /// Likewise for imagery; the dataset must have some.
 uint64_t verifyImagery(const DatasetArchives& dataset, int jobs, const std::atomic<bool>& stop, FaultList& faults);
 
-/// The tiles that an archive lists, in Hilbert order. Throws Error(dataset) when a directory is damaged.
-[[nodiscard]] std::vector<TileId> listTiles(const PmtilesReader& archive);
+/// The tiles that an archive lists, in Hilbert order, and how its directories list them.
+struct TileList {
+    std::vector<TileId> tiles;
+    uint64_t entries = 0;   ///< runs of tiles that share their bytes
+    uint64_t contents = 0;  ///< different tile contents
+};
+/// Throws Error(dataset) when a directory is damaged.
+[[nodiscard]] TileList listTiles(const PmtilesReader& archive);
 /// Compares what the header of an archive says with the metadata and with the tiles found.
-void verifyHeader(const DatasetArchives& dataset, const PmtilesReader& archive, uint32_t finestLevel, uint64_t tiles,
-                  FaultList& faults);
+void verifyHeader(const DatasetArchives& dataset, const PmtilesReader& archive, uint32_t finestLevel,
+                  const TileList& found, FaultList& faults);
 
 }  // namespace terray

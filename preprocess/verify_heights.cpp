@@ -91,13 +91,14 @@ class HeightVerifier {
           archive_(dataset.heights),
           extent_{metadata_.tiling.finestLevel, metadata_.samples},
           faults_(faults),
-          tiles_(listTiles(archive_)),
+          list_(listTiles(archive_)),
+          tiles_(list_.tiles),
           listed_(tiles_.begin(), tiles_.end()),
           levelErrors_(extent_.finestLevel + 1, 0) {}
 
     uint64_t run(const DatasetArchives& dataset, int jobs, const std::atomic<bool>& stop) {
         forEachParallel(tiles_.size(), jobs, stop, [&](int, size_t item) { verify(tiles_[item]); });
-        verifyHeader(dataset, archive_, extent_.finestLevel, tiles_.size(), faults_);
+        verifyHeader(dataset, archive_, extent_.finestLevel, list_, faults_);
         verifyTotals();
         return tiles_.size();
     }
@@ -257,7 +258,8 @@ class HeightVerifier {
     const PmtilesReader& archive_;
     PyramidExtent extent_;
     FaultList& faults_;
-    std::vector<TileId> tiles_;
+    TileList list_;
+    const std::vector<TileId>& tiles_;
     std::unordered_set<TileId> listed_;
 
     std::mutex mutex_;  ///< of all below

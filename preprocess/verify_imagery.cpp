@@ -15,12 +15,13 @@ class ImageryVerifier {
         : finestLevel_(*dataset.metadata.imageryLevel),
           archive_(*dataset.imagery),
           faults_(faults),
-          tiles_(listTiles(archive_)),
+          list_(listTiles(archive_)),
+          tiles_(list_.tiles),
           listed_(tiles_.begin(), tiles_.end()) {}
 
     uint64_t run(const DatasetArchives& dataset, int jobs, const std::atomic<bool>& stop) {
         forEachParallel(tiles_.size(), jobs, stop, [&](int, size_t item) { verify(tiles_[item]); });
-        verifyHeader(dataset, archive_, finestLevel_, tiles_.size(), faults_);
+        verifyHeader(dataset, archive_, finestLevel_, list_, faults_);
         if (!listed_.contains(TileId{})) faults_.add("imagery has no root tile");
         if (dataset.metadata.imageryTiles != tiles_.size())
             faults_.add("counts " + std::to_string(dataset.metadata.imageryTiles) + " imagery tiles, the archive has " +
@@ -67,7 +68,8 @@ class ImageryVerifier {
     uint32_t finestLevel_;
     const PmtilesReader& archive_;
     FaultList& faults_;
-    std::vector<TileId> tiles_;
+    TileList list_;
+    const std::vector<TileId>& tiles_;
     std::unordered_set<TileId> listed_;
 };
 

@@ -1,0 +1,59 @@
+#include "preprocess/parallel.h"
+
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+
+namespace terray {
+namespace {
+
+TEST(Parallel, DoesEveryItemOnceOnWorkersInRange) {
+    for (const int jobs : {1, 2, 7}) {
+        std::vector<std::atomic<int>> done(100);
+        const std::atomic<bool> stop = false;
+        forEachParallel(done.size(), jobs, stop, [&](int worker, size_t item) {
+            EXPECT_GE(worker, 0);
+            EXPECT_LT(worker, jobs);
+            ++done[item];
+        });
+        for (const auto& count : done) EXPECT_EQ(count, 1);
+    }
+    const std::atomic<bool> stop = false;
+    forEachParallel(0, 3, stop, [](int, size_t) { FAIL() << "there was nothing to do"; });
+}
+
+TEST(Parallel, ReportsTheFailureOfTheLowestItemAndStops) {
+    const std::atomic<bool> stop = false;
+    std::atomic<int> done = 0;
+    try {
+        forEachParallel(100000, 4, stop, [&](int, size_t item) {
+            ++done;
+            if (item >= 10) throw std::runtime_error(std::to_string(item));
+        });
+        FAIL() << "no failure was reported";
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "10");
+    }
+    EXPECT_LT(done, 100);
+}
+
+TEST(Parallel, AStopRequestEndsTheWork) {
+    std::atomic<bool> stop = false;
+    std::atomic<int> done = 0;
+    try {
+        forEachParallel(100000, 2, stop, [&](int, size_t) {
+            if (++done == 5) stop = true;
+        });
+        FAIL() << "the stop went unseen";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::interrupted);
+    }
+    EXPECT_LT(done, 100);
+}
+
+}  // namespace
+}  // namespace terray

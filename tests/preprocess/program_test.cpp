@@ -1,0 +1,254 @@
+// terray-preprocess as users and scripts see it: arguments in; exit code, text and files out.
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include "common/error.h"
+#include "common/json.h"
+#include "tests/preprocess/run_program.h"
+#include "tests/preprocess/test_dataset.h"
+
+namespace terray {
+namespace {
+
+using Names = std::vector<std::string>;
+
+class Program : public testing::Test {
+  protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+    static ProgramResult run(std::vector<std::string> arguments) {
+        return runPreprocessProgram({.arguments = std::move(arguments), .maxFileBytes = {}, .interruptWhen = {}});
+    }
+    /// Builds a small dataset of procedural terrain; it must go well.
+    void synth(const std::string& name, const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments = {"synth", "--size", "700", "--seed", "3", "--out", path(name)};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProgramResult result = run(arguments);
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+    }
+    /// Expects a refusal: its exit code, one line on stderr that begins with the program's name and holds `text`.
+    static void expectRefusal(const ProgramResult& result, ExitCode code, const std::string& text) {
+        EXPECT_EQ(result.exitCode, static_cast<int>(code)) << result.err;
+        EXPECT_EQ(result.err.find("terray-preprocess: "), 0u) << result.err;
+        EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(Program, SynthesisesInspectsAndVerifies) {
+    const ProgramResult built = run({"synth", "--size", "700", "--spacing", "2", "--out", path("out")});
+    EXPECT_EQ(built.exitCode, 0) << built.err;
+    EXPECT_NE(built.out.find("heights: 5 tiles"), std::string::npos) << built.out;
+    EXPECT_NE(built.out.find("error by level"), std::string::npos);
+    EXPECT_NE(built.err.find("heights 1 to 0: 1 blocks"), std::string::npos) << built.err;
+    EXPECT_EQ(directory_.names(), Names{"out"});
+
+    const ProgramResult info = run({"info", path("out")});
+    EXPECT_EQ(info.exitCode, 0);
+    EXPECT_NE(info.out.find("700 x 700 samples, 2 m apart"), std::string::npos) << info.out;
+    const ProgramResult json = run({"info", path("out"), "--json"});
+    const auto parsed = Json::parse(json.out);
+    ASSERT_TRUE(parsed.ok()) << parsed.failure().message;
+    EXPECT_EQ(metadataFromJson(*parsed->find("metadata")).value().heightTiles, 5u);
+
+    const ProgramResult verified = run({"verify", path("out")});
+    EXPECT_EQ(verified.exitCode, 0) << verified.err;
+    EXPECT_NE(verified.out.find("5 height tiles, 0 imagery tiles, 0 faults"), std::string::npos) << verified.out;
+}
+
+TEST_F(Program, SameOptionsMakeTheSameBytes) {
+    const std::vector<std::string> imagery =
+        TERRAY_WITH_STB ? std::vector<std::string>{"--imagery"} : std::vector<std::string>{};
+    auto more = imagery;
+    more.insert(more.end(), {"--jobs", "1", "--memory", "128M", "--quiet"});
+    synth("a", imagery);
+    synth("b", more);
+    for (const char* name : {kHeightsFile, kImageryFile}) {
+        if (!std::filesystem::exists(directory_ / "a" / name)) continue;
+        EXPECT_EQ(readFile(directory_ / "a" / name), readFile(directory_ / "b" / name)) << name;
+    }
+}
+
+TEST_F(Program, ProgressIsOneJsonObjectForEachLine) {
+    const ProgramResult result = run({"synth", "--size", "600", "--out", path("out"), "--json-progress"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.err, "");
+    std::istringstream lines(result.out);
+    std::string line;
+    std::string last;
+    while (std::getline(lines, line)) {
+        const auto json = Json::parse(line);
+        ASSERT_TRUE(json.ok()) << line;
+        last = json->stringAt("event").value();
+    }
+    EXPECT_EQ(last, "done");
+}
+
+TEST_F(Program, QuietPrintsNothing) {
+    const ProgramResult result = run({"synth", "--size", "10", "--out", path("out"), "--quiet"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(Program, HelpAndVersionAreNoErrors) {
+    for (const char* command : {"build", "synth", "info", "verify"}) {
+        const ProgramResult help = run({command, "--help"});
+        EXPECT_EQ(help.exitCode, 0);
+        EXPECT_NE(help.out.find(std::string("terray-preprocess ") + command), std::string::npos) << help.out;
+    }
+    EXPECT_EQ(run({"--help"}).exitCode, 0);
+    EXPECT_NE(run({"--version"}).out.find("terray-preprocess "), std::string::npos);
+}
+
+TEST_F(Program, RefusesWrongUsage) {
+    expectRefusal(run({}), ExitCode::usage, "no command");
+    expectRefusal(run({"biuld"}), ExitCode::usage, "biuld");
+    expectRefusal(run({"synth", "--sise", "9", "--out", path("out")}), ExitCode::usage, "--size");
+    expectRefusal(run({"synth", "--size", "9"}), ExitCode::usage, "--out");
+    expectRefusal(run({"synth", "--size", "0", "--out", path("out")}), ExitCode::usage, "--size is 0");
+    expectRefusal(run({"synth", "--size", "-5", "--out", path("out")}), ExitCode::usage, "--size");
+    expectRefusal(run({"synth", "--size", "9", "--spacing", "0", "--out", path("out")}), ExitCode::usage, "--spacing");
+    expectRefusal(run({"synth", "--size", "9", "--jobs", "0", "--out", path("out")}), ExitCode::usage, "--jobs");
+    expectRefusal(run({"synth", "--size", "9", "--memory", "1M", "--out", path("out")}), ExitCode::usage, "128 MiB");
+    expectRefusal(run({"synth", "--size", "9", "--quiet", "--json-progress", "--out", path("out")}), ExitCode::usage,
+                  "--quiet");
+    expectRefusal(run({"build", "--out", path("out")}), ExitCode::usage, "DEM");
+    EXPECT_TRUE(directory_.names().empty());
+}
+
+TEST_F(Program, DoesNotTouchExistingOutputWithoutForce) {
+    synth("out");
+    const Bytes before = readFile(directory_ / "out" / kHeightsFile);
+    expectRefusal(run({"synth", "--size", "20", "--out", path("out")}), ExitCode::output, "--force");
+    EXPECT_EQ(readFile(directory_ / "out" / kHeightsFile), before);
+    EXPECT_EQ(run({"synth", "--size", "20", "--out", path("out"), "--force"}).exitCode, 0);
+    EXPECT_NE(readFile(directory_ / "out" / kHeightsFile), before);
+    EXPECT_EQ(directory_.names(), Names{"out"});
+}
+
+TEST_F(Program, ForceDoesNotDeleteWhatIsNoDataset) {
+    std::filesystem::create_directory(directory_ / "photos");
+    std::ofstream(directory_ / "photos" / "holiday.jpg") << "x";
+    expectRefusal(run({"synth", "--size", "20", "--out", path("photos"), "--force"}), ExitCode::output, "holiday.jpg");
+    EXPECT_TRUE(std::filesystem::exists(directory_ / "photos" / "holiday.jpg"));
+}
+
+TEST_F(Program, RefusesOutputThatCannotBeWritten) {
+    // Also for root, who may write nearly everywhere: the process directory takes no new entries.
+    expectRefusal(run({"synth", "--size", "20", "--out", "/proc/self/dataset"}), ExitCode::output, "/proc/");
+    std::ofstream(directory_ / "file") << "x";
+    expectRefusal(run({"synth", "--size", "20", "--out", path("file/out")}), ExitCode::output, "not a directory");
+    expectRefusal(run({"synth", "--size", "20", "--out", path("missing/out")}), ExitCode::output, "not a directory");
+    EXPECT_EQ(directory_.names(), Names{"file"});
+}
+
+TEST_F(Program, AFileThatMayNotGrowLeavesNothingBehind) {
+    // Each limit strikes elsewhere: the stored level, the spilled tiles, the archive.
+    for (const uint64_t limit : {uint64_t{0}, uint64_t{4096}, uint64_t{100000}, uint64_t{2} << 20}) {
+        const ProgramResult result =
+            runPreprocessProgram({.arguments = {"synth", "--size", "4100", "--out", path("out"), "--quiet"},
+                                  .maxFileBytes = limit,
+                                  .interruptWhen = {}});
+        // With no byte allowed not even the message can be written to the file that stands in for stderr.
+        if (limit == 0)
+            EXPECT_EQ(result.exitCode, static_cast<int>(ExitCode::output));
+        else
+            expectRefusal(result, ExitCode::output, "File too large");
+        EXPECT_TRUE(directory_.names().empty()) << limit;
+    }
+}
+
+TEST_F(Program, AFullDiskLeavesNothingBehind) {
+    std::filesystem::create_directory(directory_ / "disk");
+    if (::mount("none", path("disk").c_str(), "tmpfs", 0, "size=1m") != 0) {
+        RecordProperty("mount", "not allowed here: AFileThatMayNotGrowLeavesNothingBehind stands in for it");
+        GTEST_SKIP() << "cannot mount a small file system; AFileThatMayNotGrowLeavesNothingBehind stands in for it";
+    }
+    const ProgramResult result = run({"synth", "--size", "1500", "--out", path("disk/out"), "--quiet"});
+    const bool empty = std::filesystem::is_empty(directory_ / "disk");
+    EXPECT_EQ(::umount(path("disk").c_str()), 0);
+    expectRefusal(result, ExitCode::output, "No space left");
+    EXPECT_TRUE(empty);
+}
+
+TEST_F(Program, AnInterruptLeavesNothingBehind) {
+    const std::filesystem::path tiles = directory_ / "out.partial" / "work" / "height-tiles";
+    const ProgramResult result =
+        runPreprocessProgram({.arguments = {"synth", "--size", "60000", "--out", path("out"), "--quiet"},
+                              .maxFileBytes = {},
+                              .interruptWhen = [&] { return std::filesystem::exists(tiles); }});
+    expectRefusal(result, ExitCode::interrupted, "interrupted");
+    EXPECT_TRUE(directory_.names().empty());
+}
+
+TEST_F(Program, RefusesWhatIsNoDataset) {
+    expectRefusal(run({"verify", path("missing")}), ExitCode::dataset, "no such directory");
+    expectRefusal(run({"info", path("missing")}), ExitCode::dataset, "no such directory");
+    std::filesystem::create_directory(directory_ / "empty");
+    expectRefusal(run({"verify", path("empty")}), ExitCode::dataset, "not a Terray dataset");
+}
+
+TEST_F(Program, RefusesATruncatedArchive) {
+    synth("out");
+    const Bytes whole = readFile(directory_ / "out" / kHeightsFile);
+    for (const size_t length : {size_t{0}, size_t{100}, size_t{500}, whole.size() / 2, whole.size() - 1}) {
+        writeFile(directory_ / "out" / kHeightsFile, ByteView(whole).first(length));
+        for (const char* command : {"info", "verify"})
+            expectRefusal(run({command, path("out")}), ExitCode::dataset, "heights.pmtiles");
+    }
+}
+
+TEST_F(Program, NamesTheTileWithAFlippedBit) {
+    synth("out");
+    Bytes bytes = readFile(directory_ / "out" / kHeightsFile);
+    bytes[bytes.size() - 100] ^= std::byte{16};  // in the last tile of the curve
+    writeFile(directory_ / "out" / kHeightsFile, bytes);
+    const ProgramResult result = run({"verify", path("out")});
+    EXPECT_EQ(result.exitCode, static_cast<int>(ExitCode::verification));
+    EXPECT_EQ(result.err.find("heights 1/1/0: "), 0u) << result.err;
+    EXPECT_NE(result.out.find("1 faults"), std::string::npos) << result.out;
+}
+
+TEST_F(Program, RefusesAnArchiveOfAFutureVersion) {
+    synth("out");
+    rewriteArchive(directory_ / "out" / kHeightsFile, [](Payloads&, std::string& text) {
+        Json json = Json::parse(text).value();
+        json.set("format", kDatasetFormat + 1);
+        text = json.dump();
+    });
+    for (const char* command : {"info", "verify"})
+        expectRefusal(run({command, path("out")}), ExitCode::dataset, "format 2");
+    // The archive's own version is a byte of its header.
+    Bytes bytes = readFile(directory_ / "out" / kHeightsFile);
+    bytes[7] = std::byte{4};
+    writeFile(directory_ / "out" / kHeightsFile, bytes);
+    expectRefusal(run({"verify", path("out")}), ExitCode::dataset, "version");
+}
+
+#if !TERRAY_WITH_STB
+TEST_F(Program, SaysWhichLibraryImageryNeeds) {
+    expectRefusal(run({"synth", "--size", "20", "--imagery", "--out", path("out")}), ExitCode::unsupported, "stb");
+    EXPECT_TRUE(directory_.names().empty());
+}
+#endif
+
+#if !TERRAY_WITH_GDAL
+TEST_F(Program, SaysWhichLibraryRastersNeed) {
+    expectRefusal(run({"build", "a.tif", "--out", path("out")}), ExitCode::unsupported, "GDAL");
+    EXPECT_TRUE(directory_.names().empty());
+}
+#else
+TEST_F(Program, NamesASourceThatIsMissing) {
+    expectRefusal(run({"build", path("missing.tif"), "--out", path("out")}), ExitCode::input, "missing.tif");
+    std::ofstream(directory_ / "text.tif") << "this is no raster";
+    expectRefusal(run({"build", path("text.tif"), "--out", path("out")}), ExitCode::input, "text.tif");
+    EXPECT_EQ(directory_.names(), Names{"text.tif"});
+}
+#endif
+
+}  // namespace
+}  // namespace terray
