@@ -154,6 +154,7 @@ HeightFormula hills(double relief) {
             relief * (0.5 + 0.25 * std::sin(x / 150) * std::cos(y / 190) + 0.1 * std::sin((x + 2 * y) / 37));
         height += 0.003 * relief * std::sin(x * 1.7) * std::sin(y * 2.3);
         Random random(static_cast<uint64_t>(column * 1000003 + row));
+        if (column == 1023 && row % 97 == 50) height -= 0.7 * relief;
         if (column % 2048 < 900 && random.chance(5e-6)) height += relief * random.uniform(-0.5, 0.3);
         return height;
     };

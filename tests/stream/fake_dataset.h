@@ -31,8 +31,8 @@ struct FakeOptions {
 /// Builds the pyramid as FORMAT.md says: means of valid samples, records with measured bounds and errors.
 [[nodiscard]] FakeDataset buildDataset(const HeightFormula& height, const FakeOptions& options);
 
-/// Rolling hills of about `relief` metres, with a few single-sample pits and spikes in the west: what aprons of coarse
-/// tiles average away.
+/// Rolling hills of about `relief` metres with a smooth eastern half. In the west a few single-sample pits and spikes,
+/// and a row of pits along the border between the halves: what the apron of a coarse tile in the east averages away.
 [[nodiscard]] HeightFormula hills(double relief);
 
 /// Serves a fake dataset without faults.
