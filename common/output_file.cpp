@@ -108,4 +108,12 @@ void OutputFile::publish(const std::filesystem::path& target) {
     ::close(folderDescriptor);
 }
 
+void writeWholeFile(const std::filesystem::path& target, ByteView content) {
+    std::filesystem::path partial = target;
+    partial += ".partial";
+    OutputFile file(partial);
+    file.write(content);
+    file.publish(target);
+}
+
 }  // namespace terray

@@ -37,4 +37,8 @@ class OutputFile {
     Bytes buffer_;
 };
 
+/// Writes a file that appears whole or not at all, by way of `target` with ".partial" appended. Throws as OutputFile
+/// does.
+void writeWholeFile(const std::filesystem::path& target, ByteView content);
+
 }  // namespace terray

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <numeric>
+#include <span>
 
 namespace terray {
 namespace {
@@ -130,7 +131,7 @@ Json summaryOf(std::vector<double> values) {
 }  // namespace
 
 FrameTable::FrameTable(const std::filesystem::path& path)
-    : file_(path), stream_(file_.path(), std::ios::binary | std::ios::trunc), values_(columns().size()) {
+    : path_(path), file_(path.string() + ".partial"), values_(columns().size()) {
     write(header());
 }
 
@@ -154,13 +155,12 @@ void FrameTable::add(const FrameMeasurement& frame) {
 }
 
 void FrameTable::write(const std::string& line) {
-    stream_ << line << '\n' << std::flush;
-    if (!stream_) file_.fail("the disk is full, or the directory is not writable");
+    const std::string whole = line + '\n';
+    file_.write(std::as_bytes(std::span(whole)));
 }
 
 void FrameTable::finish() {
-    stream_.close();
-    file_.commit();
+    file_.publish(path_);
 }
 
 Json FrameTable::summary() const {

@@ -2,15 +2,14 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "client/bench/ray_statistics.h"
 #include "client/engine/engine.h"
-#include "client/output/partial_file.h"
 #include "common/json.h"
+#include "common/output_file.h"
 
 namespace terray {
 
@@ -24,7 +23,7 @@ struct FrameMeasurement {
     std::optional<RayStatistics> rays;  ///< none with --no-statistics
 };
 
-/// The table frames.csv: one line a frame, written as the flight goes on, renamed to its name by finish(). Columns are
+/// The table frames.csv: one line a frame, written as the flight goes on under a temporary name. Columns are
 /// documented in client/README.md, "Replay output"; a value that does not exist is an empty field.
 /// All functions throw Error(output) when the file cannot be written.
 class FrameTable {
@@ -50,8 +49,8 @@ class FrameTable {
     [[nodiscard]] const std::vector<double>& values(const std::string& column) const;
     void write(const std::string& line);
 
-    PartialFile file_;
-    std::ofstream stream_;
+    std::filesystem::path path_;
+    OutputFile file_;
     std::vector<std::vector<double>> values_;  ///< by column, those that exist
 };
 

@@ -11,8 +11,9 @@
 #include <sys/resource.h>
 #include <sys/utsname.h>
 
-#include "client/output/partial_file.h"
 #include "common/checksum.h"
+#include "common/error.h"
+#include "common/output_file.h"
 #include "common/version.h"
 
 namespace terray {
@@ -88,12 +89,8 @@ uint64_t peakResidentBytes() {
 }
 
 void writeJson(const std::filesystem::path& path, const Json& json) {
-    PartialFile file(path);
-    std::ofstream stream(file.path(), std::ios::binary | std::ios::trunc);
-    stream << json.dump() << '\n';
-    stream.close();
-    if (!stream) file.fail("the disk is full, or the directory is not writable");
-    file.commit();
+    const std::string text = json.dump() + "\n";
+    writeWholeFile(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace terray

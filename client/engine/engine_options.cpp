@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
@@ -81,6 +82,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--imagery-tolerance", imageryTolerance_, 1e-3, kMostPixels);
     requireRange("--anisotropy", anisotropy_, 1, 16);
     requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
+    if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
 
     EngineOptions options;

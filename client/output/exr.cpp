@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <exception>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -6,14 +8,36 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfVecAttribute.h>
 
-#include "client/output/partial_file.h"
 #include "client/output/picture.h"
+#include "common/bytes.h"
+#include "common/error.h"
+#include "common/output_file.h"
 
 namespace terray {
 namespace {
+
+/// Where OpenEXR writes to: memory, since its files do not tell of a disk that is full when they are closed.
+class MemoryStream final : public Imf::OStream {
+  public:
+    explicit MemoryStream(const std::string& name) : Imf::OStream(name.c_str()) {}
+    void write(const char bytes[], int count) override {
+        const auto from = std::as_bytes(std::span(bytes, static_cast<size_t>(count)));
+        if (content_.size() < position_ + from.size()) content_.resize(position_ + from.size());
+        std::copy(from.begin(), from.end(), content_.begin() + static_cast<std::ptrdiff_t>(position_));
+        position_ += from.size();
+    }
+    uint64_t tellp() override { return position_; }
+    void seekp(uint64_t position) override { position_ = position; }
+    [[nodiscard]] const Bytes& content() const { return content_; }
+
+  private:
+    Bytes content_;
+    uint64_t position_ = 0;
+};
 
 /// Collects channels, then writes them. The arrays are borrowed.
 class ExrChannels {
@@ -36,10 +60,14 @@ class ExrChannels {
                                         sizeof(Cell) * static_cast<size_t>(size_.width)));
     }
 
-    void write(const std::string& path) const {
-        Imf::OutputFile file(path.c_str(), header_);
-        file.setFrameBuffer(pixels_);
-        file.writePixels(static_cast<int>(size_.height));
+    [[nodiscard]] Bytes encode(const std::string& name) const {
+        MemoryStream stream(name);
+        {
+            Imf::OutputFile file(stream, header_);
+            file.setFrameBuffer(pixels_);
+            file.writePixels(static_cast<int>(size_.height));
+        }  // writes its table of lines when it ends
+        return stream.content();
     }
 
   private:
@@ -62,8 +90,8 @@ Grid<HalfColour> halves(const Grid<glm::vec4>& colour) {
 }  // namespace
 
 void writeExr(const std::filesystem::path& path, const MeasuredPicture& picture) {
-    PartialFile file(path);
     const Grid<HalfColour> colour = halves(picture.colour);
+    Bytes encoded;
     try {
         ExrChannels channels(picture.colour.size());
         channels.add<Imath::half>("R", Imf::HALF, colour, 0);
@@ -82,11 +110,11 @@ void writeExr(const std::filesystem::path& path, const MeasuredPicture& picture)
         channels.add<uint32_t>("ray.hit", Imf::UINT, picture.hit);
         const glm::dvec3& origin = picture.positionOrigin;
         channels.header().insert("terray:positionOrigin", Imf::V3dAttribute({origin.x, origin.y, origin.z}));
-        channels.write(file.path().string());
-    } catch (const std::exception& failure) {  // whatever OpenEXR throws: the file could not be written
-        file.fail(failure.what());
+        encoded = channels.encode(path.string());
+    } catch (const std::exception& failure) {  // whatever OpenEXR throws
+        throw Error(ExitCode::output, "cannot encode " + path.string() + ": " + failure.what());
     }
-    file.commit();
+    writeWholeFile(path, encoded);
 }
 
 }  // namespace terray

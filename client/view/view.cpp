@@ -11,12 +11,12 @@
 #include "client/engine/dataset_camera.h"
 #include "client/engine/engine.h"
 #include "client/engine/engine_options.h"
-#include "client/output/partial_file.h"
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
 #include "client/stream/camera.h"
 #include "client/stream/dataset_source.h"
 #include "common/command_line.h"
+#include "common/output_file.h"
 
 namespace terray {
 namespace {
@@ -59,10 +59,7 @@ PictureKind kindOf(const std::filesystem::path& path) {
 void requireWritable(const std::filesystem::path& path, bool force) {
     if (std::filesystem::exists(path) && !force)
         throw Error(ExitCode::output, path.string() + " exists (give --force to replace it)");
-    const PartialFile probe(path);
-    std::FILE* file = std::fopen(probe.path().c_str(), "wb");
-    if (file == nullptr) probe.fail("its directory is missing or not writable");
-    std::fclose(file);
+    const OutputFile probe(path.string() + ".partial");  // removed again at once
 }
 
 Camera cameraOf(const ViewOptions& options, const DatasetMetadata& metadata) {

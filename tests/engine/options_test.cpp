@@ -1,0 +1,95 @@
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "client/engine/engine_options.h"
+#include "client/engine/program.h"
+#include "common/error.h"
+
+namespace terray {
+namespace {
+
+EngineOptions parsed(const std::vector<std::string>& arguments, bool datasetHasImagery = true) {
+    EngineCommandLine options;
+    CommandLine line("test", "");
+    options.declare(line);
+    EXPECT_TRUE(line.parse(arguments));
+    return options.options(datasetHasImagery);
+}
+
+ExitCode refusal(const std::vector<std::string>& arguments) {
+    try {
+        (void)parsed(arguments);
+    } catch (const Error& error) {
+        return error.code();
+    }
+    return ExitCode::ok;
+}
+
+TEST(EngineOptions, DefaultsAreThoseOfTheLibrary) {
+    const EngineOptions options = parsed({});
+    const EngineOptions library;
+    EXPECT_EQ(options.selection.tolerance, library.selection.tolerance);
+    EXPECT_EQ(options.selection.imageryTolerance, library.selection.imageryTolerance);
+    EXPECT_EQ(options.gpuHeightBytes, library.gpuHeightBytes);
+    EXPECT_EQ(options.gpuImageryBytes, library.gpuImageryBytes);
+    EXPECT_EQ(options.uploadBytesPerFrame, library.uploadBytesPerFrame);
+    EXPECT_EQ(options.pager.hostBudgetBytes, library.pager.hostBudgetBytes);
+    EXPECT_EQ(options.render.anisotropy, library.render.anisotropy);
+    EXPECT_TRUE(options.render.occlusion);
+    // The default sun is printed with one decimal of a degree.
+    const glm::dvec3 sun = glm::normalize(library.render.sunDirection);
+    EXPECT_NEAR(glm::length(options.render.sunDirection - sun), 0, 0.002);
+}
+
+TEST(EngineOptions, MemoryGoesToHeightsWhenThereIsNoPhoto) {
+    EXPECT_EQ(parsed({"--gpu-memory", "100M"}).gpuHeightBytes, 50ull << 20);
+    EXPECT_EQ(parsed({"--gpu-memory", "100M"}).gpuImageryBytes, 50ull << 20);
+    for (const EngineOptions& options :
+         {parsed({"--gpu-memory", "100M"}, false), parsed({"--gpu-memory", "100M", "--no-imagery"})}) {
+        EXPECT_EQ(options.gpuHeightBytes, 100ull << 20);
+        EXPECT_EQ(options.gpuImageryBytes, 0u);
+        EXPECT_FALSE(options.selection.useImagery);
+    }
+}
+
+TEST(EngineOptions, TheSunStandsWhereItIsPut) {
+    const auto expectNear = [](const glm::dvec3& found, const glm::dvec3& expected) {
+        EXPECT_NEAR(glm::length(found - expected), 0, 1e-12);
+    };
+    expectNear(sunDirection("0,0"), {0, 1, 0});
+    expectNear(sunDirection("90,0"), {1, 0, 0});
+    expectNear(sunDirection("180,30"), {0, -std::sqrt(0.75), 0.5});
+    expectNear(sunDirection("-90,-45"), {-std::sqrt(0.5), 0, -std::sqrt(0.5)});
+    expectNear(sunDirection("12,90"), {0, 0, 1});
+}
+
+TEST(EngineOptions, OutOfRangeIsAUsageError) {
+    for (const auto& arguments : std::vector<std::vector<std::string>>{{"--tolerance", "0"},
+                                                                       {"--tolerance", "-1"},
+                                                                       {"--imagery-tolerance", "0"},
+                                                                       {"--anisotropy", "17"},
+                                                                       {"--decode-threads", "-1"},
+                                                                       {"--occlusion", "maybe"},
+                                                                       {"--sun", "10"},
+                                                                       {"--sun", "10,91"},
+                                                                       {"--sun", "10,20,30"},
+                                                                       {"--sun", "north,20"},
+                                                                       {"--host-memory", "much"}})
+        EXPECT_EQ(refusal(arguments), ExitCode::usage) << arguments[0] << " " << arguments[1];
+}
+
+TEST(Program, ExitsWithTheCodeOfTheError) {
+    char name[] = "test";
+    char* arguments[] = {name, nullptr};
+    const auto exitCode = [&](const std::function<ExitCode(const std::vector<std::string>&)>& body) {
+        return runProgram("test", 1, arguments, body);
+    };
+    EXPECT_EQ(exitCode([](const auto&) { return ExitCode::ok; }), 0);
+    EXPECT_EQ(exitCode([](const auto&) -> ExitCode { throw Error(ExitCode::dataset, "damaged"); }), 5);
+    EXPECT_EQ(exitCode([](const auto&) -> ExitCode { throw std::runtime_error("unforeseen"); }), 1);
+}
+
+}  // namespace
+}  // namespace terray
