@@ -1,0 +1,114 @@
+#include "tests/e2e/column_oracle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include "common/check.h"
+
+namespace terray {
+namespace {
+
+struct Span {
+    double from = 0;
+    double to = std::numeric_limits<double>::infinity();
+};
+
+/// Cuts a span down to where low <= start + t * slope <= high.
+void clip(Span& span, double start, double slope, double low, double high) {
+    if (low > high || slope == 0) {
+        if (!(start >= low && start <= high)) span.to = -1;
+        return;
+    }
+    const double a = (low - start) / slope;
+    const double b = (high - start) / slope;
+    span.from = std::max(span.from, std::min(a, b));
+    span.to = std::min(span.to, std::max(a, b));
+}
+
+glm::dvec3 centreOf(const GroundRect& ground) {
+    return {(ground.west + ground.east) / 2, (ground.south + ground.north) / 2, 0};
+}
+
+}  // namespace
+
+ColumnOracle::ColumnOracle(const TileSource& source) : source_(source) {}
+
+const HeightTile& ColumnOracle::tile(const TileId& id) {
+    auto found = tiles_.find(id);
+    if (found == tiles_.end()) {
+        auto bytes = source_.read(TileLayer::heights, id);
+        TERRAY_CHECK(bytes.ok());
+        auto decoded = decodeHeightTile(*bytes, id);
+        TERRAY_CHECK(decoded.ok());
+        found = tiles_.emplace(id, std::move(*decoded)).first;
+    }
+    return found->second;
+}
+
+std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ray) {
+    const Tiling& tiling = source_.metadata().tiling;
+    const GroundRect ground = tiling.bounds(node.cell);
+    const double metresPerT = glm::length(ray.direction);
+    const auto changeAt = [&](double t) { return ray.sign * (0.01 + 0x1p-20 * t * metresPerT); };
+    Span span;
+    clip(span, ray.eye.z, ray.direction.z, ray.floor, node.maxHeight + 1);
+    const double widest =
+        ray.sign < 0 ? 0
+                     : 0.01 + 0x1p-20 * std::hypot(glm::distance(ray.eye, centreOf(ground)), ground.east - ground.west);
+    clip(span, ray.eye.x, ray.direction.x, ground.west - widest, ground.east + widest);
+    clip(span, ray.eye.y, ray.direction.y, ground.south - widest, ground.north + widest);
+    if (span.to <= span.from) return {};
+
+    const HeightTile& tile = this->tile(node.heightTile);
+    const GroundRect source = tiling.bounds(node.heightTile);
+    const double spacing = tiling.spacing(node.heightTile.level);
+    const glm::dvec2 eye((ray.eye.x - source.west) / spacing, (source.north - ray.eye.y) / spacing);
+    const glm::dvec2 perT(ray.direction.x / spacing, -ray.direction.y / spacing);
+    const auto throughCell = [&](int64_t column, int64_t row, double grow) {
+        Span cell{0, span.to};
+        clip(cell, eye.x, perT.x, static_cast<double>(column) - grow, static_cast<double>(column + 1) + grow);
+        clip(cell, eye.y, perT.y, static_cast<double>(row) - grow, static_cast<double>(row + 1) + grow);
+        return cell;
+    };
+    /// Time at which the ray meets one column, if it does.
+    const auto meetColumn = [&](int64_t column, int64_t row, double change) -> std::optional<double> {
+        if (std::min(column, row) < 0 || std::max(column, row) >= kTileCore) return {};
+        const uint16_t code = tile.codes.at(column + kHeightApron, row + kHeightApron);
+        if (code == kNoSurface) return {};
+        Span inside = throughCell(column, row, change / spacing);
+        clip(inside, ray.eye.z, ray.direction.z, ray.floor, tile.encoding.height(code) + change);
+        return inside.from <= inside.to ? std::optional(inside.from) : std::nullopt;
+    };
+    const int64_t beside = ray.sign > 0 ? 1 : 0;  // grown columns reach into their neighbours
+    std::optional<double> first;
+    // A column beside the ray's cell may be met later than one in the next cell, so go on until past what was found.
+    for (double t = span.from; t < std::min(span.to, first.value_or(span.to));) {
+        // The cell around a point just ahead, and the time at which the ray leaves that cell.
+        const double ahead = t + 1e-9 * std::max(1.0, t) + 1e-7 * spacing / metresPerT;
+        const auto column = static_cast<int64_t>(std::floor(eye.x + ahead * perT.x));
+        const auto row = static_cast<int64_t>(std::floor(eye.y + ahead * perT.y));
+        for (int64_t y = row - beside; y <= row + beside; ++y)
+            for (int64_t x = column - beside; x <= column + beside; ++x) {
+                const auto met = meetColumn(x, y, changeAt(ahead));
+                if (met && (!first || *met < *first)) first = met;
+            }
+        t = std::max(throughCell(column, row, 0).to, ahead);
+    }
+    return first;
+}
+
+std::optional<double> ColumnOracle::meet(const std::vector<DrawNode>& nodes, const glm::dvec3& eye,
+                                         const glm::dvec3& direction, Columns columns, double floor) {
+    std::optional<double> first;
+    for (const DrawNode& node : nodes) {
+        const auto t = meetNode(node, {eye, direction, columns == Columns::shrunk ? -1.0 : 1.0, floor});
+        if (t && (!first || *t < *first)) first = t;
+    }
+    return first;
+}
+
+}  // namespace terray

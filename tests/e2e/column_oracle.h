@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "client/stream/dataset_source.h"
+#include "common/draw_node.h"
+
+namespace terray {
+
+/// Says what a ray meets among the columns of a draw list, by plain cell-to-cell stepping in double on the CPU: no
+/// pyramid, no mirrored frame, no code in common with the shaders.
+class ColumnOracle {
+  public:
+    explicit ColumnOracle(const TileSource& source);
+
+    /// How columns are resized before a ray is tried against them, so that an answer is sure in spite of float rounding
+    /// on the GPU, which moves a ray by at most a few 2^-23 of the distance.
+    enum class Columns {
+        shrunk,  ///< a ray that meets one certainly meets the ground
+        grown,   ///< a ray that meets none certainly clears it
+    };
+    /// View depth at which a ray first meets a column. Each is smaller (or larger) by 1 cm + 2^-20 of the distance on
+    /// its top and its four sides, and reaches down to `floor` (metres). Directions as View::direction gives them.
+    [[nodiscard]] std::optional<double> meet(const std::vector<DrawNode>& nodes, const glm::dvec3& eye,
+                                             const glm::dvec3& direction, Columns columns, double floor);
+
+    [[nodiscard]] const TileSource& source() const { return source_; }
+    /// The tile's samples, decoded once.
+    [[nodiscard]] const HeightTile& tile(const TileId& id);
+
+  private:
+    struct Ray {
+        glm::dvec3 eye;
+        glm::dvec3 direction;
+        double sign;  ///< of the change: -1 shrunk, 1 grown
+        double floor;
+    };
+    std::optional<double> meetNode(const DrawNode& node, const Ray& ray);
+
+    const TileSource& source_;
+    std::unordered_map<TileId, HeightTile> tiles_;
+};
+
+}  // namespace terray

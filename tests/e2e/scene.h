@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "client/engine/engine.h"
+#include "client/render/gl_context.h"
+#include "client/stream/dataset_source.h"
+#include "preprocess/raster_source.h"
+
+namespace terray {
+
+/// Height in metres of sample (column, row) of the finest grid, or kNoHeight.
+using HeightFunction = std::function<float(int64_t column, int64_t row)>;
+
+/// A dataset built from a function into a temporary directory that goes with this object.
+///
+/// The grid's upper-left corner is at (1000, 5000), away from 0 so that a lost offset shows.
+class ComputedDataset {
+  public:
+    ComputedDataset(const HeightFunction& heights, GridSize size, double spacing);
+    /// With terray-preprocess's own procedural terrain instead.
+    ComputedDataset(int64_t size, double spacing, uint64_t seed);
+    ~ComputedDataset();
+    ComputedDataset(const ComputedDataset&) = delete;
+    ComputedDataset& operator=(const ComputedDataset&) = delete;
+
+    [[nodiscard]] const TileSource& source() const { return *source_; }
+    [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
+    [[nodiscard]] GroundRect ground() const { return source_->metadata().groundBounds(); }
+
+  private:
+    void build(const HeightSource& heights);
+
+    std::filesystem::path parent_;
+    std::filesystem::path directory_;
+    std::unique_ptr<TileSource> source_;
+};
+
+/// Options for pictures that are looked into: signal sky, steps and normals on.
+[[nodiscard]] EngineOptions inspectedOptions();
+
+/// A camera from degrees.
+[[nodiscard]] Camera cameraAt(glm::dvec3 position, double headingDegrees, double pitchDegrees, double fovDegrees = 45);
+
+/// Pixels of the last frame whose ray ran out of steps.
+[[nodiscard]] int64_t raysOutOfSteps(const FrameTargets& targets);
+
+}  // namespace terray
