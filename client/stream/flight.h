@@ -39,7 +39,9 @@ void saveFlight(const Flight& flight, const std::filesystem::path& path, const P
 
 /// A standard flight derived from a dataset's extent and heights, so that runs on one dataset compare: an overview from
 /// outside, a descent, a low pass over rough ground looking ahead, a turn, a climb, a look straight down, a sweep of
-/// the horizon. The camera stays above the ground it flies over by a clearance taken from the data.
+/// the horizon. The camera stays above the ground it flies over by a clearance taken from the data: at
+/// least 0.6 % of the extent (checked 30 times a second of the flight). `dataset` is left empty for the caller to name
+/// it. Reads up to five coarse tiles; throws Error(dataset) when one is damaged. @param seconds  > 0
 [[nodiscard]] Flight standardTour(const TileSource& source, double seconds);
 
 }  // namespace terray

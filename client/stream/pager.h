@@ -62,6 +62,7 @@ class Pager {
     Pager& operator=(const Pager&) = delete;
 
     /// States everything that is wanted now, most urgent first; replaces what was wanted before.
+    /// A tile that has been taken and is wanted again is delivered again.
     void want(const std::vector<TileRequest>& wanted);
     /// What has arrived since the last call, in order of arrival, at most maxTiles of it.
     [[nodiscard]] std::vector<LoadedTile> takeLoaded(size_t maxTiles);

@@ -213,7 +213,7 @@ Flight standardTour(const TileSource& source, double seconds) {
     const GroundMap map = GroundMap::read(source);
     const Planner planner(map);
     const Flight route{.dataset = {}, .name = {}, .keys = planner.waypoints(seconds)};
-    Flight tour{.dataset = source.contentHash(), .name = "standard tour", .keys = denseKeys(route, planner)};
+    Flight tour{.dataset = {}, .name = "standard tour", .keys = denseKeys(route, planner)};
     raiseUntilClear(tour, planner);
     return tour;
 }

@@ -238,6 +238,28 @@ TEST(Selection, AMissingMiddleLevelIsNeitherNeededNorAskedFor) {
     for (const TileRequest& request : middle.wanted) EXPECT_EQ(request.id.level, 1u);
 }
 
+TEST(Selection, AStandInIsNoMoreThanNineLevelsAboveItsCell) {
+    // One path of twelve tiles, each the north-western child of the one before, all known, only the root resident.
+    constexpr uint32_t kFinest = 12;
+    const auto record = [](uint32_t level) {
+        return HeightRecord{
+            .exists = true, .hasHoles = false, .minHeight = 0, .maxHeight = 10, .error = level < kFinest ? 1e6f : 0};
+    };
+    TileTree tree({0, 0, 1, kFinest}, kFinest, {});
+    for (uint32_t level = 0; level <= kFinest; ++level) {
+        HeightTile tile{.id = {level, 0, 0}, .encoding = {}, .record = record(level), .children = {}, .codes = {}};
+        if (level < kFinest) tile.children[0] = record(level + 1);
+        tree.learn(tile);
+    }
+    tree.setHeightsResident({}, true);
+    const View view = viewOf({.position = {100, -100, 500}, .pitch = Radians(kDown)}, 300, 300);
+    const Selection selection = select(tree, view, {});
+    ASSERT_EQ(selection.wanted.size(), 1u);
+    EXPECT_EQ(selection.wanted[0].id, (TileId{9, 0, 0})) << "then the finest is within nine levels";
+    tree.setHeightsResident({9, 0, 0}, true);
+    EXPECT_EQ(select(tree, view, {}).wanted.at(0).id, (TileId{kFinest, 0, 0}));
+}
+
 TEST(Selection, GroundWithoutSurfaceIsNotDrawn) {
     // The eastern half is a hole, so its tiles do not exist.
     const FakeDataset half =
