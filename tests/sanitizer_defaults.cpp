@@ -17,11 +17,15 @@ const char* __tsan_default_options() {
     return "halt_on_error=1:second_deadlock_stack=1";
 }
 
-// Mesa's software rasteriser synchronises its threads in code that was not instrumented.
+// Mesa's software rasteriser, GDAL and OpenImageIO synchronise their threads in code that was not instrumented; GDAL's
+// drivers take two mutexes in both orders while they are registered, once, by one thread.
 const char* __tsan_default_suppressions() {
     return "called_from_lib:libEGL_mesa.so\n"
            "called_from_lib:swrast_dri.so\n"
-           "called_from_lib:libLLVM";
+           "called_from_lib:libLLVM\n"
+           "race:libgdal\n"
+           "race:libOpenImageIO\n"
+           "deadlock:libgdal";
 }
 
 const char* __lsan_default_options() {
@@ -35,6 +39,7 @@ const char* __lsan_default_suppressions() {
            "leak:libglapi\n"
            "leak:swrast_dri\n"
            "leak:libLLVM\n"
+           "leak:libOpenImageIO\n"
            "leak:libgdal\n"
            "leak:libproj";
 }
