@@ -12,8 +12,9 @@ constexpr uint64_t kMiB = 1u << 20;
 /// Levels in a block: 8 x 8 tiles, so the next stage sees 1/64 of the data; a deeper block would take four times the
 /// memory.
 constexpr uint32_t kMaxDepth = 3;
-/// The program itself, its libraries and the index of tiles.
-constexpr uint64_t kFixedBytes = 64 * kMiB;
+/// The program, its libraries and the index of tiles: 131 MB are resident before any work, nearly all of it GDAL,
+/// OpenImageIO and what these load (Debian 12).
+constexpr uint64_t kFixedBytes = 136 * kMiB;
 /// One tile being encoded: codes, floats, predictor and compressor.
 constexpr uint64_t kTileBufferBytes = 8 * kMiB;
 
@@ -32,6 +33,10 @@ uint32_t busyDepth(const PyramidExtent& extent, int jobs) {
 uint32_t fittingDepth(uint32_t depth, int jobs, uint64_t budget, uint64_t (*blockBytes)(uint32_t)) {
     while (depth > 1 && blockBytes(depth) * static_cast<uint64_t>(jobs) > budget) --depth;
     return depth;
+}
+
+std::string blockText(uint32_t depth) {
+    return std::to_string(1u << depth) + " x " + std::to_string(1u << depth);
 }
 
 }  // namespace
@@ -94,13 +99,13 @@ uint64_t imageryBlockBytes(uint32_t depth) {
 }
 
 uint64_t cacheShare(uint64_t memoryBytes) {
-    return std::clamp(memoryBytes / 8, 16 * kMiB, 256 * kMiB);
+    return std::clamp(memoryBytes / 8, 32 * kMiB, 256 * kMiB);
 }
 
 WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights, const PyramidExtent* imagery) {
     if (memoryBytes < kMinMemoryBytes)
         throw Error(ExitCode::usage, "--memory is " + std::to_string(memoryBytes / kMiB) + " MiB; at least " +
-                                         std::to_string(kMinMemoryBytes / kMiB) + " MiB are needed (--memory 128M)");
+                                         std::to_string(kMinMemoryBytes / kMiB) + " MiB are needed (--memory 256M)");
     WorkPlan plan;
     plan.jobs = jobs;
     plan.cacheBytes = cacheShare(memoryBytes);
@@ -120,9 +125,10 @@ WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights, 
     plan.jobs = static_cast<int>(std::min<uint64_t>(static_cast<uint64_t>(jobs), fit));
 
     if (smaller || plan.jobs < jobs)
-        plan.note = "--memory " + std::to_string(memoryBytes / kMiB) + " MiB: working in blocks of " +
-                    std::to_string(1 << plan.heightDepth) + " x " + std::to_string(1 << plan.heightDepth) +
-                    " tiles with " + std::to_string(plan.jobs) + " jobs";
+        plan.note = "to stay within " + std::to_string(memoryBytes / kMiB) + " MiB: blocks of " +
+                    blockText(plan.heightDepth) + " height tiles" +
+                    (imagery != nullptr ? ", " + blockText(plan.imageryDepth) + " imagery tiles" : "") + ", " +
+                    std::to_string(plan.jobs) + " jobs (--memory)";
     return plan;
 }
 

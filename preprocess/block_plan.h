@@ -63,7 +63,7 @@ struct WorkPlan {
 };
 
 /// The smallest --memory that a dataset can be built with.
-inline constexpr uint64_t kMinMemoryBytes = 128u << 20;
+inline constexpr uint64_t kMinMemoryBytes = 256u << 20;
 
 /// Chooses the largest blocks, up to three levels deep, of which `jobs` fit `memoryBytes` and that still keep every
 /// thread busy; then, if even the smallest blocks are too many, fewer jobs.

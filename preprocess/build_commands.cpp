@@ -56,7 +56,7 @@ struct SharedOptions {
                         "--jobs is " + std::to_string(jobs) + "; it must be from 1 to " + std::to_string(kMaxJobs));
         if (memoryBytes < kMinMemoryBytes)
             throw Error(ExitCode::usage, "--memory is " + std::to_string(memoryBytes) + " bytes; at least " +
-                                             std::to_string(kMinMemoryBytes >> 20) + " MiB are needed (--memory 128M)");
+                                             std::to_string(kMinMemoryBytes >> 20) + " MiB are needed (--memory 256M)");
         OutputDirectory::check(out, force);
     }
     [[nodiscard]] ProgressStyle style() const {

@@ -64,7 +64,7 @@ TEST(BlockPlan, WindowsHoldEveryTileOfEveryLevelWithItsApron) {
 TEST(BlockPlan, MemoryBoundsBlocksTimesJobs) {
     const PyramidExtent heights{.finestLevel = 9, .samples = {200000, 200000}};
     const PyramidExtent imagery{.finestLevel = 10, .samples = {400000, 400000}};
-    for (const uint64_t memory : {128 * kMiB, 200 * kMiB, 512 * kMiB, 2048 * kMiB, 65536 * kMiB}) {
+    for (const uint64_t memory : {256 * kMiB, 300 * kMiB, 512 * kMiB, 2048 * kMiB, 65536 * kMiB}) {
         for (const int jobs : {1, 2, 16, 128}) {
             const WorkPlan plan = planWork(jobs, memory, heights, &imagery);
             EXPECT_GE(plan.jobs, 1);
@@ -93,7 +93,7 @@ TEST(BlockPlan, RefusesTooLittleMemoryAndSaysHowMuchIsNeeded) {
         FAIL() << "too little memory was accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::usage);
-        EXPECT_NE(std::string(error.what()).find("128 MiB"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("256 MiB"), std::string::npos) << error.what();
     }
 }
 

@@ -64,7 +64,7 @@ TEST_F(Program, SameOptionsMakeTheSameBytes) {
     const std::vector<std::string> imagery =
         TERRAY_WITH_STB ? std::vector<std::string>{"--imagery"} : std::vector<std::string>{};
     auto more = imagery;
-    more.insert(more.end(), {"--jobs", "1", "--memory", "128M", "--quiet"});
+    more.insert(more.end(), {"--jobs", "1", "--memory", "256M", "--quiet"});
     synth("a", imagery);
     synth("b", more);
     for (const char* name : {kHeightsFile, kImageryFile}) {
@@ -113,7 +113,7 @@ TEST_F(Program, RefusesWrongUsage) {
     expectRefusal(run({"synth", "--size", "-5", "--out", path("out")}), ExitCode::usage, "--size");
     expectRefusal(run({"synth", "--size", "9", "--spacing", "0", "--out", path("out")}), ExitCode::usage, "--spacing");
     expectRefusal(run({"synth", "--size", "9", "--jobs", "0", "--out", path("out")}), ExitCode::usage, "--jobs");
-    expectRefusal(run({"synth", "--size", "9", "--memory", "1M", "--out", path("out")}), ExitCode::usage, "128 MiB");
+    expectRefusal(run({"synth", "--size", "9", "--memory", "1M", "--out", path("out")}), ExitCode::usage, "256 MiB");
     expectRefusal(run({"synth", "--size", "9", "--quiet", "--json-progress", "--out", path("out")}), ExitCode::usage,
                   "--quiet");
     expectRefusal(run({"build", "--out", path("out")}), ExitCode::usage, "DEM");
