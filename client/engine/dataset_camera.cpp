@@ -26,11 +26,18 @@ Camera overviewCamera(const DatasetMetadata& metadata, double aspect) {
 
     Camera camera;
     camera.pitch = radiansFromDegrees(kPitchDegrees);
-    const double tanHalfHeight = std::tan(camera.verticalFov.value() / 2);
-    const double halfAngle = std::atan(tanHalfHeight * std::min(1.0, aspect));
-    const double distance = glm::length(high - low) / 2 / std::sin(halfAngle);
-    const double pitch = camera.pitch.value();
-    camera.position = (low + high) / 2.0 - distance * glm::dvec3{0, std::cos(pitch), std::sin(pitch)};
+    // Back along the view axis until every corner of the box lies inside the picture, with a margin of a tenth.
+    const View view = viewOf(camera, 1000, std::max(static_cast<int>(1000 / aspect), 1));
+    const glm::dvec3 centre = (low + high) / 2.0;
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 place(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
+        const glm::dvec3 fromCentre = place - centre;
+        const double across = std::abs(glm::dot(fromCentre, view.right)) / view.tanHalfWidth();
+        const double along = std::abs(glm::dot(fromCentre, view.up)) / view.tanHalfHeight;
+        distance = std::max(distance, std::max(across, along) / 0.9 - glm::dot(fromCentre, view.forward));
+    }
+    camera.position = centre - distance * view.forward;
     return camera;
 }
 

@@ -26,8 +26,10 @@ enum class PhotoFilter : uint8_t {
 
 /// Light and filtering of a frame.
 struct RenderOptions {
-    glm::dvec3 sunDirection{-0.5, 0.35, 0.8};  ///< towards the sun, world frame, any length > 0
-    float anisotropy = 16;                     ///< 1..16, of photo sampling
+    /// Towards the sun, world frame, any length > 0. The default is 40 degrees high in the north-west, as maps are
+    /// shaded.
+    glm::dvec3 sunDirection{-0.5417, 0.5417, 0.6428};
+    float anisotropy = 16;  ///< 1..16, of photo sampling
     PhotoFilter photoFilter = PhotoFilter::automatic;
     double nearMetres = 0.1;  ///< view depth that depth value 1 stands for; hits nearer count as it
     bool occlusion = true;    ///< the tile-ID pass (paper 001, section 3.4)
