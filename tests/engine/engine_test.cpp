@@ -57,7 +57,8 @@ EngineOptions withSlots(uint64_t heights, uint64_t imagery) {
 
 int64_t groundPixels(const Engine& engine) {
     int64_t pixels = 0;
-    for (const uint32_t node : engine.targets().readNodes().cells()) pixels += node != 0 ? 1 : 0;
+    const Grid<uint32_t> nodes = engine.targets().readNodes();
+    for (const uint32_t node : nodes.cells()) pixels += node != 0 ? 1 : 0;
     return pixels;
 }
 
@@ -155,7 +156,9 @@ TEST_F(EngineTest, ALostTileIsToldOnceAndStoodInFor) {
     ASSERT_EQ(first.failures.size(), 1u);
     EXPECT_NE(first.failures[0].find(toString(nearest)), std::string::npos) << first.failures[0];
     EXPECT_GT(first.standIns, 0u);
-    EXPECT_EQ(groundPixels(*drawing), groundPixels(*drawing));
+    // Coarser ground has another skyline, not holes.
+    EXPECT_NEAR(static_cast<double>(groundPixels(*drawing)), static_cast<double>(groundPixels(*whole)),
+                0.02 * kWidth * kHeight);
     const uint64_t reads = damaged.reads();
     for (const bool wait : {true, false, false}) {
         const FrameReport later = drawing->drawFrame(camera, wait);
