@@ -112,8 +112,10 @@ class Grid {
     [[nodiscard]] const T& at(int64_t x, int64_t y) const { return view().at(x, y); }
     [[nodiscard]] GridView<T> view() { return {cells_.data(), size_}; }
     [[nodiscard]] GridView<const T> view() const { return {cells_.data(), size_}; }
-    [[nodiscard]] std::span<T> cells() { return cells_; }
-    [[nodiscard]] std::span<const T> cells() const { return cells_; }
+    [[nodiscard]] std::span<T> cells() & { return cells_; }
+    [[nodiscard]] std::span<const T> cells() const& { return cells_; }
+    /// A span over a temporary would outlive its cells, as in a range-based for over the result of a function.
+    std::span<const T> cells() const&& = delete;
     bool operator==(const Grid&) const = default;
 
   private:

@@ -123,7 +123,7 @@ struct BuildOptions {
     }
     void check() const {
         if (heights.spacing) requirePositive("--spacing", *heights.spacing);
-        if (heights.heightScale == 0 || !std::isfinite(heights.heightScale))
+        if (heights.heightScale && (*heights.heightScale == 0 || !std::isfinite(*heights.heightScale)))
             throw Error(ExitCode::usage, "--height-scale must be a number other than 0");
         if (!std::isfinite(heights.heightOffset))
             throw Error(ExitCode::usage, "--height-offset must be a finite number");
@@ -134,7 +134,7 @@ struct BuildOptions {
         OptionsText options("build");
         if (!heights.crs.empty()) options.add("--crs", heights.crs);
         if (heights.spacing) options.add("--spacing", *heights.spacing);
-        if (heights.heightScale != 1) options.add("--height-scale", heights.heightScale);
+        if (heights.heightScale) options.add("--height-scale", *heights.heightScale);
         if (heights.heightOffset != 0) options.add("--height-offset", heights.heightOffset);
         if (heights.nodata) options.add("--nodata", *heights.nodata);
         return options.text();

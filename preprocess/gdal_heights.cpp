@@ -136,10 +136,10 @@ class HeightOpener {
                 throw Error(ExitCode::input, "cannot mosaic \"" + first.name + "\" and \"" + raster.name +
                                                  "\": their heights differ in unit, scale or offset (\"" + first.unit +
                                                  "\" and \"" + raster.unit + "\"); convert one with gdal_translate");
-        double userScale = options_.heightScale;
+        double userScale = options_.heightScale.value_or(1);
         const std::string unit = first.unit.empty() ? first.crs.verticalUnit : first.unit;
         const std::optional<double> metresPerUnit = metresPerHeightUnit(unit);
-        if (userScale == 1 && metresPerUnit.value_or(1) != 1) {
+        if (!options_.heightScale && metresPerUnit.value_or(1) != 1) {
             userScale = *metresPerUnit;
             note("heights are in \"" + unit + "\": one unit is " + metres(userScale));
         } else if (!unit.empty() && !metresPerUnit) {
@@ -194,6 +194,21 @@ class HeightOpener {
         return keep(gdal::translate(raster.name, arguments));
     }
 
+    /// UTM (or UPS) where the ground is; for ground so wide that its scale would be off by more than 1 % at the rim, an
+    /// equal-area projection around the middle.
+    static Crs metricCrs(const std::string& raster) {
+        constexpr double kWidestUtm = 1.8e6;  // metres: k = 0.9996 (1 + x^2 / 2 R^2) reaches 1.01 at x = 920 km
+        const LonLat middle = gdal::centre(raster);
+        Crs utm = gdal::describeCrs("EPSG:" + std::to_string(metricEpsg(middle)));
+        const GroundRect extent = gdal::footprint(raster, utm.wkt).extent;
+        if (std::max(extent.east - extent.west, extent.north - extent.south) <= kWidestUtm) return utm;
+        const std::string place =
+            "+lat_0=" + exactText(std::round(middle.latitude)) + " +lon_0=" + exactText(std::round(middle.longitude));
+        Crs wide = gdal::describeCrs("+proj=laea " + place + " +datum=WGS84 +units=m +no_defs +type=crs");
+        wide.name = "Lambert azimuthal equal area, WGS 84, " + place;
+        return wide;
+    }
+
     void chooseCrs() {
         const Crs& own = groups_.front().crs;
         crs_ = options_.crs.empty() ? own : gdal::describeCrs(options_.crs);
@@ -201,7 +216,7 @@ class HeightOpener {
             throw Error(ExitCode::georeference,
                         "cannot build in " + crs_.name + ": expected a projected system in metres, such as EPSG:32632");
         if (!crs_.isMetric()) {
-            crs_ = gdal::describeCrs("EPSG:" + std::to_string(metricEpsg(gdal::centre(groups_.front().raster))));
+            crs_ = metricCrs(groups_.front().raster);
             note(own.name + " is not in metres: warped to " + crs_.name + " (another: --crs)");
         }
         info_.crsWkt = crs_.wkt;

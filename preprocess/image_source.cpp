@@ -93,7 +93,7 @@ class ImageHeightReader final : public HeightReader {
     [[nodiscard]] float metres(double sample) const {
         const HeightSourceOptions& options = image_->options;
         if (options.nodata && sample == *options.nodata) return kNoHeight;
-        const auto height = static_cast<float>(sample * options.heightScale + options.heightOffset);
+        const auto height = static_cast<float>(sample * options.heightScale.value_or(1) + options.heightOffset);
         return std::isfinite(height) ? height : kNoHeight;
     }
 
@@ -163,7 +163,7 @@ std::unique_ptr<HeightSource> openImageHeights(const HeightSourceOptions& option
                                                        .options = options});
     HeightGridInfo info{.size = image->size, .spacing = *options.spacing, .files = {onDisk}};
     const bool isInteger = image->type == OIIO::TypeUInt8 || image->type == OIIO::TypeUInt16;
-    info.sourceStep = isInteger ? std::abs(options.heightScale) : 0;
+    info.sourceStep = isInteger ? std::abs(options.heightScale.value_or(1)) : 0;
     return std::make_unique<ImageHeights>(std::move(info), std::move(image));
 }
 

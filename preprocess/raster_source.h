@@ -21,15 +21,16 @@ inline constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
 /// Where a grid of heights lies. Cells are squares; the first one's upper-left corner is (west, north).
 struct HeightGridInfo {
-    GridSize size;              ///< samples of the finest level, both > 0
-    double west = 0;            ///< metres in the dataset's coordinate system
+    GridSize size;    ///< samples of the finest level, both > 0
+    double west = 0;  ///< metres in the dataset's coordinate system
     double north = 0;
-    double spacing = 1;         ///< metres, > 0
-    std::string crsWkt;         ///< WKT2; empty for a plain image
-    std::string crsName;        ///< "EPSG:32613", or the system's name
+    double spacing = 1;                      ///< metres, > 0
+    std::string crsWkt;                      ///< WKT2; empty for a plain image
+    std::string crsName;                     ///< "EPSG:32613", or the system's name
     std::optional<GroundRect> lonLatBounds;  ///< degrees
     std::string verticalDatum = "unknown";
-    /// Greatest step, metres, between which values of the source can lie: 1 for integers in metres, 0 when unknown (floats).
+    /// Greatest step, metres, between which values of the source can lie: 1 for integers in metres, 0 when unknown
+    /// (floats).
     double sourceStep = 0;
     std::vector<SourceFile> files;
 };
@@ -38,8 +39,8 @@ struct HeightGridInfo {
 class HeightReader {
   public:
     virtual ~HeightReader() = default;
-    /// Heights in metres for `window` of the finest grid, which may reach beyond the grid: kNoHeight there and where the
-    /// source has no data. `out` has the window's size. Throws Error(input) when the source cannot be read.
+    /// Heights in metres for `window` of the finest grid, which may reach beyond the grid: kNoHeight there and where
+    /// the source has no data. `out` has the window's size. Throws Error(input) when the source cannot be read.
     virtual void read(const GridRect& window, GridView<float> out) = 0;
 };
 
@@ -51,8 +52,8 @@ class HeightSource {
     [[nodiscard]] virtual std::unique_ptr<HeightReader> openReader() const = 0;
 };
 
-/// Reads windows of a photo in 8-bit sRGB, alpha 255 where the photo has data, else 0, resampled to the imagery grid: cells of Tiling::spacing(level()), anchored at the root
-/// square's upper-left corner. One reader serves one thread.
+/// Reads windows of a photo in 8-bit sRGB, alpha 255 where the photo has data, else 0, resampled to the imagery grid:
+/// cells of Tiling::spacing(level()), anchored at the root square's upper-left corner. One reader serves one thread.
 class ColourReader {
   public:
     virtual ~ColourReader() = default;
@@ -74,12 +75,12 @@ class ColourSource {
 /// How a user asked for heights to be read; every field as the option of `terray-preprocess build` of that name.
 struct HeightSourceOptions {
     std::vector<std::string> files;
-    std::string crs;                   ///< "EPSG:2056" and the like; empty: the source's, or a metric one chosen
-    std::optional<double> spacing;     ///< metres; needed for plain images
-    double heightScale = 1;            ///< metres per unit of the source
-    double heightOffset = 0;           ///< metres, added after scaling
-    std::optional<double> nodata;      ///< in the source's unit, instead of what the file says
-    uint64_t cacheBytes = 256u << 20;  ///< for the reading library's own cache
+    std::string crs;                    ///< "EPSG:2056" and the like; empty: the source's, or a metric one chosen
+    std::optional<double> spacing;      ///< metres; needed for plain images
+    std::optional<double> heightScale;  ///< metres per unit of the source; none: as the file says, else 1
+    double heightOffset = 0;            ///< metres, added after scaling
+    std::optional<double> nodata;       ///< in the source's unit, instead of what the file says
+    uint64_t cacheBytes = 256u << 20;   ///< for the reading library's own cache
     std::function<void(const std::string&)> note;  ///< told what was decided, such as the chosen system
 };
 

@@ -62,7 +62,9 @@ TEST_F(KnownAnswers, PlaneIsHitWhereEachRayMeetsIt) {
     EXPECT_EQ(raysOutOfSteps(engine.targets()), 0);
     const Grid<glm::vec3> normals = engine.targets().readNormals();
     for (const glm::vec3& normal : normals.cells())
-        if (normal != glm::vec3(0)) EXPECT_NEAR(normal.z, 1, 1e-3);
+        if (normal != glm::vec3(0)) {
+            EXPECT_NEAR(normal.z, 1, 1e-3);
+        }
 }
 
 TEST_F(KnownAnswers, StepShowsItsWallAtItsPlace) {
