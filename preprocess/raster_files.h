@@ -13,35 +13,36 @@ namespace terray {
 
 /// Georeferenced rasters through GDAL: one file, or several mosaicked in the order given (later ones on top).
 ///
-/// Degrees, rotated grids, non-square cells, or a `crs` other than the source's are warped on the fly (bilinear, on a grid
-/// whose spacing is the source's finest on the ground unless `spacing` says otherwise); otherwise samples are taken as they
-/// are. Fails with Error(input) for what is missing, no raster, cut short or empty, Error(georeference) for a system that is
-/// missing or unusable.
+/// Degrees, rotated grids, non-square cells, or a `crs` other than the source's are warped on the fly (bilinear, on a
+/// grid whose spacing is the source's finest on the ground unless `spacing` says otherwise); otherwise samples are
+/// taken as they are. Fails with Error(input) for what is missing, no raster, cut short or empty, Error(georeference)
+/// for a system that is missing or unusable.
 [[nodiscard]] std::unique_ptr<HeightSource> openGdalHeights(const HeightSourceOptions& options);
 
-/// A plain height image (PNG, TIFF, EXR) through OpenImageIO: first channel, `spacing` metres per pixel, corner at (0, 0).
-/// Integer samples are taken as they are stored (0..65535), not normalised.
+/// A plain height image (PNG, TIFF, EXR) through OpenImageIO: first channel, `spacing` metres per pixel, corner at (0,
+/// 0). Integer samples are taken as they are stored (0..65535), not normalised.
 [[nodiscard]] std::unique_ptr<HeightSource> openImageHeights(const HeightSourceOptions& options);
 
 /// Whether `file` is to be read as a plain image: OpenImageIO knows it and GDAL finds no georeference in it.
 [[nodiscard]] bool isPlainImage(const std::string& file);
 
-/// Photos through GDAL, mosaicked (later ones on top) and warped to the imagery grid of `tiling`. Grey, RGB, RGBA, paletted,
-/// 8 or 16 bits. A photo without georeference is stretched over the ground of the heights when these are a plain image too.
-/// Throws Error(georeference) when no photo overlaps the heights.
+/// Photos through GDAL, mosaicked (later ones on top) and warped to the imagery grid of `tiling`. Grey, RGB, RGBA,
+/// paletted, 8 or 16 bits. A photo without georeference is stretched over the ground of the heights when these are a
+/// plain image too. Throws Error(georeference) when no photo overlaps the heights.
 [[nodiscard]] std::unique_ptr<ColourSource> openGdalPhotos(const std::vector<std::string>& files, const Tiling& tiling,
                                                            GridSize samples, const std::string& crsWkt,
                                                            uint64_t cacheBytes);
 
-/// A procedural terrain: a ridged fractal with valleys, plains and a lake, the same for the same seed on every machine, and
-/// any window of any size of it at the same cost per sample.
+/// A procedural terrain: a ridged fractal with valleys, plains and a lake, the same for the same seed on every machine,
+/// and any window of any size of it at the same cost per sample.
 struct SyntheticTerrain {
     int64_t size = 1024;  ///< samples along a side
     double spacing = 1;   ///< metres
     uint64_t seed = 1;
 };
 [[nodiscard]] std::unique_ptr<HeightSource> makeSyntheticHeights(const SyntheticTerrain& terrain);
-/// A photo to go with it, coloured by height and slope, with a checked pattern of fields; one level finer than the heights.
+/// A photo to go with it, coloured by height and slope, with a checked pattern of fields; one level finer than the
+/// heights.
 [[nodiscard]] std::unique_ptr<ColourSource> makeSyntheticPhoto(const SyntheticTerrain& terrain, const Tiling& tiling);
 
 }  // namespace terray

@@ -1,10 +1,12 @@
-// Data that C++ writes and shaders read: one file, compiled by both. Every struct is std430/std140-clean: vec4 and uvec4 only.
+// Data that C++ writes and shaders read: one file, compiled by both. Every struct is std430/std140-clean: vec4 and
+// uvec4 only.
 #ifndef TERRAY_INTEROP_H
 #define TERRAY_INTEROP_H
 
 #ifdef __cplusplus
-#include <glm/vec4.hpp>
 #include <cstdint>
+
+#include <glm/vec4.hpp>
 namespace terray::interop {
 using vec4 = glm::vec4;
 using uvec4 = glm::uvec4;
@@ -24,8 +26,8 @@ using uvec4 = glm::uvec4;
 // A slot that is none: NodeParameters::source.y of a node without photo.
 #define TERRAY_NO_SLOT 0xffffffffu
 
-// One draw node. "Tile frame": of the node's height source tile, x east and y south in its texels (0..512 over the core),
-// z in its height codes, so that a column's top is exactly its code.
+// One draw node. "Tile frame": of the node's height source tile, x east and y south in its texels (0..512 over the
+// core), z in its height codes, so that a column's top is exactly its code.
 struct NodeParameters {
     vec4 eye;      // xyz: the eye in the tile frame; w: metres per texel
     vec4 right;    // xyz: half the picture's width at view depth 1 m, in the tile frame; w: metres per code
@@ -33,18 +35,19 @@ struct NodeParameters {
     vec4 forward;  // xyz: the view axis, 1 m, in the tile frame
     vec4 boxMin;   // xyz: the cell's box in the tile frame
     vec4 boxMax;
-    vec4 photo;    // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
-    uvec4 source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: pyramid level to start at
+    vec4 photo;  // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
+    uvec4
+        source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: pyramid level to start at
 };
 
 // One frame.
 struct FrameParameters {
-    vec4 right;     // xyz: half the picture's width at view depth 1 m, world (metres, east north up); w: width in pixels
-    vec4 up;        // xyz: half the picture's height, likewise; w: height in pixels
-    vec4 forward;   // xyz: the view axis, unit; w: view depth that depth value 1 stands for, metres
-    vec4 sun;       // xyz: towards the sun, unit, world
-    vec4 viewScale; // x: 1 / length of right, y: 1 / length of up, squared; z: most probes of a photo sample
-    vec4 ground;    // rgb: linear colour of ground without photo
+    vec4 right;    // xyz: half the picture's width at view depth 1 m, world (metres, east north up); w: width in pixels
+    vec4 up;       // xyz: half the picture's height, likewise; w: height in pixels
+    vec4 forward;  // xyz: the view axis, unit; w: view depth that depth value 1 stands for, metres
+    vec4 sun;      // xyz: towards the sun, unit, world
+    vec4 viewScale;  // x: 1 / length of right, y: 1 / length of up, squared; z: most probes of a photo sample
+    vec4 ground;     // rgb: linear colour of ground without photo
 };
 
 #ifdef __cplusplus
