@@ -37,22 +37,22 @@ struct Comparison {
     }
 };
 
-/// Every pixel of the last frame against the oracle's answer for the same draw list.
-Comparison compare(const Engine& engine, ColumnOracle& oracle) {
+/// Every pixel of a picture against the oracle's answer for the same draw list.
+Comparison compare(const std::vector<DrawNode>& drawn, const View& view, const FrameTargets& targets,
+                   ColumnOracle& oracle) {
     Comparison result;
-    const auto nodes = engine.targets().readNodes();
-    const auto hits = engine.targets().readHits();
+    const auto nodes = targets.readNodes();
+    const auto hits = targets.readHits();
     const double floor = oracle.source().metadata().minHeight;
-    result.outOfSteps = raysOutOfSteps(engine.targets());
+    result.outOfSteps = raysOutOfSteps(targets);
     for (int64_t y = 0; y < nodes.height(); ++y)
         for (int64_t x = 0; x < nodes.width(); ++x) {
             ++result.pixels;
-            const glm::dvec3 eye = engine.view().eye;
-            const glm::dvec3 direction =
-                engine.view().direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+            const glm::dvec3 eye = view.eye;
+            const glm::dvec3 direction = view.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
             const uint32_t node = nodes.at(x, y);
             const double t = hits.at(x, y).w;
-            const auto sure = oracle.meet(engine.nodes(), eye, direction, ColumnOracle::Columns::shrunk, floor);
+            const auto sure = oracle.meet(drawn, eye, direction, ColumnOracle::Columns::shrunk, floor);
             if (sure) {
                 ++result.ground;
                 if (node == 0) {
@@ -62,17 +62,21 @@ Comparison compare(const Engine& engine, ColumnOracle& oracle) {
                 }
             }
             if (node != 0) {
-                const auto possible =
-                    oracle.meet(engine.nodes(), eye, direction, ColumnOracle::Columns::grown, floor - 1e6);
+                const auto possible = oracle.meet(drawn, eye, direction, ColumnOracle::Columns::grown, floor - 1e6);
                 if (!possible) ++result.falseGround;
                 if (possible && t < *possible * (1 - 0x1p-18) - 0.05) ++result.misplaced;
             }
             if (x > 0 && node != 0 && nodes.at(x - 1, y) != 0) {
-                const auto levelOf = [&](uint32_t n) { return engine.nodes()[n - 1].heightTile.level; };
+                const auto levelOf = [&](uint32_t n) { return drawn[n - 1].heightTile.level; };
                 result.jumps += levelOf(node) != levelOf(nodes.at(x - 1, y)) ? 1 : 0;
             }
         }
     return result;
+}
+
+/// The last frame of an engine.
+Comparison compare(const Engine& engine, ColumnOracle& oracle) {
+    return compare(engine.nodes(), engine.view(), engine.targets(), oracle);
 }
 
 class Watertight : public testing::Test {
@@ -144,12 +148,13 @@ TEST_F(Watertight, TwoHundredRandomCamerasUnderAStarvedBudgetShowNoHole) {
     RecordProperty("jumps", std::to_string(all.jumps));
 }
 
+/// Blocks of 512 samples alternate between 0 and 900 m, so every tile border is a cliff; and rough inside.
+float cliffs(int64_t column, int64_t row) {
+    const bool high = ((column / 512) + (row / 512)) % 2 == 1;
+    return static_cast<float>((high ? 900 : 0) + (column * 7919 + row * 104729) % 13);
+}
+
 TEST_F(Watertight, CliffsAlongTileBordersAreClosed) {
-    // Blocks of 512 samples alternate between 0 and 900 m, so every tile border is a cliff; and rough inside.
-    const auto cliffs = [](int64_t column, int64_t row) {
-        const bool high = ((column / 512) + (row / 512)) % 2 == 1;
-        return static_cast<float>((high ? 900 : 0) + (column * 7919 + row * 104729) % 13);
-    };
     const ComputedDataset dataset(cliffs, {2048, 2048}, 1);
     ColumnOracle oracle(dataset.source());
     std::mt19937 random(11);
@@ -165,6 +170,22 @@ TEST_F(Watertight, CliffsAlongTileBordersAreClosed) {
     }
     expectClean(all);
     EXPECT_GT(all.ground, 10000);
+}
+
+TEST_F(Watertight, TheComparisonSeesHolesWhenWallsAreCutShort) {
+    const ComputedDataset dataset(cliffs, {2048, 2048}, 1);
+    ColumnOracle oracle(dataset.source());
+    Engine engine(dataset.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    engine.drawFrame(cameraAt({1250, 4700, 400}, 110, -10, 60), true);
+    EXPECT_EQ(compare(engine, oracle).holes, 0);
+
+    // The same nodes with boxes that end 100 m below their tops.
+    std::vector<DrawNode> cut = engine.nodes();
+    for (DrawNode& node : cut) node.minHeight = std::max(node.minHeight, node.maxHeight - 100);
+    TerrainRenderer renderer(shaders_, dataset.source().metadata().tiling);
+    FrameTargets targets(kWidth, kHeight, inspectedOptions().features);
+    renderer.render(engine.view(), cut, engine.tiles(), {}, targets, nullptr);
+    EXPECT_GT(compare(cut, engine.view(), targets, oracle).holes, 100);
 }
 
 TEST_F(Watertight, StraightDownLowOverARidgeAndAtTheEdge) {
