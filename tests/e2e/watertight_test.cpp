@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "client/stream/flight.h"
+#include "common/rgba.h"
 #include "tests/e2e/column_oracle.h"
 #include "tests/e2e/scene.h"
 
@@ -16,6 +17,9 @@ namespace {
 
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
+
+/// What TERRAY_SIGNAL_SKY draws where there is no ground.
+constexpr Rgba kSignal = {255, 0, 255, 255};
 
 struct Comparison {
     int64_t pixels = 0;
@@ -43,6 +47,7 @@ Comparison compare(const std::vector<DrawNode>& drawn, const View& view, const F
     Comparison result;
     const auto nodes = targets.readNodes();
     const auto hits = targets.readHits();
+    const auto colours = targets.readSrgb();
     const double floor = oracle.source().metadata().minHeight;
     result.outOfSteps = raysOutOfSteps(targets);
     for (int64_t y = 0; y < nodes.height(); ++y)
@@ -55,7 +60,7 @@ Comparison compare(const std::vector<DrawNode>& drawn, const View& view, const F
             const auto sure = oracle.meet(drawn, eye, direction, ColumnOracle::Columns::shrunk, floor);
             if (sure) {
                 ++result.ground;
-                if (node == 0) {
+                if (node == 0 || colours.at(x, y) == kSignal) {
                     ++result.holes;
                 } else if (t > *sure * (1 + 0x1p-18) + 0.05) {
                     ++result.misplaced;
