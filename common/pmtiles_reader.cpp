@@ -14,7 +14,7 @@ namespace {
 using Directory = std::vector<PmtilesEntry>;
 
 constexpr int kMaxLeafLevels = 3;                       // below the root, as the reference readers allow
-constexpr size_t kMaxUnpackedBytes = size_t{64} << 20;  // of a gzip directory or metadata
+constexpr size_t kMaxInternalBytes = size_t{64} << 20;  // of a directory or the metadata, packed or not
 constexpr size_t kMaxCachedEntries = size_t{1} << 20;   // 24 MiB
 
 /// The entry whose run holds the tile or whose leaf may, else nullptr.
@@ -96,12 +96,15 @@ struct PmtilesReader::State {
 
     /// Bytes of a directory or the metadata, unpacked.
     [[nodiscard]] Result<Bytes> readInternal(uint64_t offset, uint64_t length) const {
+        if (length > kMaxInternalBytes)
+            return damaged("a directory or the metadata has " + std::to_string(length) + " bytes, more than the " +
+                           std::to_string(kMaxInternalBytes) + " that this build reads");
         auto bytes = source->read(offset, length);
         if (!bytes.ok() || header.internalCompression == PmtilesCompression::none) return bytes;
         if (header.internalCompression != PmtilesCompression::gzip)
             return damaged(
                 "its directories are compressed by a method that this build does not read (only gzip or none)");
-        auto unpacked = gzipDecompress(*bytes, kMaxUnpackedBytes);
+        auto unpacked = gzipDecompress(*bytes, kMaxInternalBytes);
         return unpacked.ok() ? std::move(unpacked) : damaged(unpacked.failure().message);
     }
 
