@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/error.h"
+#include "common/tile_payload.h"
 
 namespace terray {
 namespace {
@@ -16,6 +17,13 @@ PmtilesReader openArchive(const std::filesystem::path& directory, const char* na
     if (!source.ok()) fail(directory, source.failure().message);
     auto reader = PmtilesReader::open(std::move(source).value());
     if (!reader.ok()) fail(directory, reader.failure().message);
+    // A payload carries its own id, so tiles share no bytes; a run of 2^32 tiles over one payload would fill any
+    // memory.
+    const PmtilesHeader& header = reader->header();
+    constexpr uint64_t kLeastPayloadBytes = kPayloadPrefixBytes + kPayloadSealBytes;
+    if (header.addressedTiles == 0 || header.addressedTiles > header.tilesLength / kLeastPayloadBytes)
+        fail(directory, std::string(name) + " counts " + std::to_string(header.addressedTiles) + " tiles in " +
+                            std::to_string(header.tilesLength) + " bytes, which cannot be");
     return std::move(reader).value();
 }
 

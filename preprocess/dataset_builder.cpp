@@ -12,6 +12,7 @@
 #include "preprocess/imagery_pyramid.h"
 #include "preprocess/output_directory.h"
 #include "preprocess/parallel.h"
+#include "preprocess/raster_layout.h"
 
 namespace terray {
 namespace {
@@ -53,10 +54,6 @@ DatasetMetadata describe(const HeightGridInfo& info, const Tiling& tiling, const
     return metadata;
 }
 
-GroundRect overlap(const GroundRect& a, const GroundRect& b) {
-    return {std::max(a.west, b.west), std::max(a.south, b.south), std::min(a.east, b.east), std::min(a.north, b.north)};
-}
-
 /// One build, from sources to a directory with its final name.
 class DatasetBuild {
   public:
@@ -82,7 +79,7 @@ class DatasetBuild {
             photo = openPhoto(metadata.tiling, heights_.info());
             requireOverlap(*photo);
             metadata.imageryLevel = photo->level();
-            metadata.imageryBounds = overlap(photo->bounds(), metadata.groundBounds());
+            metadata.imageryBounds = overlapOf(photo->bounds(), metadata.groundBounds());
             metadata.sources.insert(metadata.sources.end(), photo->files().begin(), photo->files().end());
         }
         buildTiles(photo.get());
@@ -94,8 +91,7 @@ class DatasetBuild {
 
   private:
     void requireOverlap(const ColourSource& photo) const {
-        const GroundRect common = overlap(photo.bounds(), summary_.metadata.groundBounds());
-        if (common.west >= common.east || common.south >= common.north)
+        if (!overlapOf(photo.bounds(), summary_.metadata.groundBounds()))
             throw Error(ExitCode::georeference, "heights and imagery do not overlap");
         if (photo.level() > kMaxTileLevel)
             throw Error(ExitCode::input, "the imagery is too fine for the heights: more than 31 levels are needed");
@@ -191,7 +187,9 @@ PmtilesHeader archiveHeader(const DatasetMetadata& metadata, uint32_t finestLeve
     header.maxLon = bounds.east;
     header.maxLat = bounds.north;
     header.centerZoom = 0;
-    header.centerLon = (bounds.west + bounds.east) / 2;
+    // Across the antimeridian west > east, and the mean of the two would lie on the other side of the earth.
+    const double east = bounds.east < bounds.west ? bounds.east + 360 : bounds.east;
+    header.centerLon = std::remainder((bounds.west + east) / 2, 360.0);
     header.centerLat = (bounds.south + bounds.north) / 2;
     return header;
 }

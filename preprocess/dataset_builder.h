@@ -52,8 +52,8 @@ struct BuildSummary {
 /// Height quantum for a source: 1 cm; 1 mm for floats that lie half a metre apart or closer, as lidar does.
 [[nodiscard]] double chooseQuantum(const HeightGridInfo& heights);
 
-/// What an archive's header says beside its offsets: zoom range, bounds and centre. Without a coordinate system: the
-/// world.
+/// What an archive's header says beside its offsets: zoom range, bounds and centre. Bounds across the
+/// antimeridian keep west > east. Without a coordinate system: the world.
 [[nodiscard]] PmtilesHeader archiveHeader(const DatasetMetadata& metadata, uint32_t finestLevel);
 
 }  // namespace terray

@@ -248,6 +248,18 @@ std::vector<Point> outlineOf(GDALDataset& dataset) {
     return pixels;
 }
 
+/// Extends bounds in degrees by the poles inside an area of the plane. PROJ (9.1) looks for the second pole only where
+/// it has not found the first, and so cuts a map of the whole earth off near the equator.
+void includePoles(const GroundRect& area, const OGRCoordinateTransformation& degreesFromPlane, GroundRect& bounds) {
+    const std::unique_ptr<OGRCoordinateTransformation> planeFromDegrees(degreesFromPlane.GetInverse());
+    for (const double latitude : {-90.0, 90.0}) {
+        Point pole{.x = 0, .y = latitude};
+        if (!planeFromDegrees || !planeFromDegrees->Transform(1, &pole.x, &pole.y)) continue;
+        const bool isInside = pole.x > area.west && pole.x < area.east && pole.y > area.south && pole.y < area.north;
+        if (isInside) bounds = unionOf({-180, bounds.south, 180, bounds.north}, {-180, latitude, 180, latitude});
+    }
+}
+
 [[noreturn]] void refuseCentre(const Messages& messages) {
     refusePlace(
         "cannot place the raster: its centre lies where the coordinate system is not defined; choose another with "
@@ -413,6 +425,11 @@ std::optional<GroundRect> lonLatBounds(const GroundRect& area, const std::string
     if (!transformation || !transformation->TransformBounds(area.west, area.south, area.east, area.north, &bounds.west,
                                                             &bounds.south, &bounds.east, &bounds.north, kPointsPerSide))
         return {};
+    includePoles(area, *transformation, bounds);
+    // Numbers that JSON has no words for would make metadata that nobody can read.
+    const bool isFinite = std::isfinite(bounds.west) && std::isfinite(bounds.south) && std::isfinite(bounds.east) &&
+                          std::isfinite(bounds.north);
+    if (!isFinite) return {};
     return bounds;
 }
 

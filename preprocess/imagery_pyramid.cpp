@@ -1,7 +1,6 @@
 #include "preprocess/imagery_pyramid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "common/error.h"
@@ -10,6 +9,7 @@
 #include "preprocess/colour_samples.h"
 #include "preprocess/level_store.h"
 #include "preprocess/parallel.h"
+#include "preprocess/raster_layout.h"
 
 namespace terray {
 namespace {
@@ -249,13 +249,7 @@ class ImageryPyramid {
 
 /// Texels of the finest imagery level that the source may cover, one more on each side for what lies between texels.
 GridRect photoTexels(const ColourSource& source, const Tiling& tiling, const PyramidExtent& extent) {
-    const GroundRect bounds = source.bounds();
-    const double spacing = tiling.spacing(extent.finestLevel);
-    const auto west = static_cast<int64_t>(std::floor((bounds.west - tiling.west) / spacing));
-    const auto east = static_cast<int64_t>(std::ceil((bounds.east - tiling.west) / spacing));
-    const auto north = static_cast<int64_t>(std::floor((tiling.north - bounds.north) / spacing));
-    const auto south = static_cast<int64_t>(std::ceil((tiling.north - bounds.south) / spacing));
-    return intersection(grown({west, north, east - west, south - north}, 1),
+    return intersection(grown(imageryCells(source.bounds(), tiling, extent.finestLevel), 1),
                         {0, 0, extent.samples.width, extent.samples.height});
 }
 

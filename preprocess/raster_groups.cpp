@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "common/check.h"
+#include "common/error.h"
 
 namespace terray {
 
@@ -64,6 +66,13 @@ std::vector<std::string> placeArguments(const gdal::RasterFacts& raster) {
 }
 
 std::vector<std::string> gridArguments(const SquareGrid& grid, const std::string& crsWkt) {
+    // GDAL would read a greater number modulo 2^32 and make a raster of some other size.
+    constexpr int64_t kMostSide = std::numeric_limits<int>::max();
+    if (grid.size.width > kMostSide || grid.size.height > kMostSide)
+        throw Error(ExitCode::input, "cannot resample to " + std::to_string(grid.size.width) + " x " +
+                                         std::to_string(grid.size.height) + " cells: GDAL takes at most " +
+                                         std::to_string(kMostSide) +
+                                         " along a side; choose a coarser --spacing, or coarser imagery");
     const GroundRect area = grid.bounds();
     std::vector<std::string> arguments{"-te",
                                        exactText(area.west),

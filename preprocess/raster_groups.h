@@ -30,7 +30,7 @@ struct RasterGroup {
 [[nodiscard]] std::vector<std::string> placeArguments(const gdal::RasterFacts& raster);
 
 /// gdalwarp's options for an exact target: system, outline, columns and rows. Reads no overviews, whose samples are
-/// other people's averages.
+/// other people's averages. Throws Error(input) for more than 2^31 - 1 columns or rows.
 [[nodiscard]] std::vector<std::string> gridArguments(const SquareGrid& grid, const std::string& crsWkt);
 
 }  // namespace terray

@@ -16,6 +16,7 @@ namespace {
 constexpr double kSameSpacing = 1e-6;  // relative
 constexpr double kSamePlace = 0.01;    // of a cell: far below what resampling would blur
 constexpr double kRounding = 1e-6;     // of a cell
+constexpr double kMostCells = 1e15;    // along a side: far beyond what any raster library takes, and still exact
 
 bool sameSpacing(double a, double b) {
     return std::abs(a - b) <= kSameSpacing * std::max(std::abs(a), std::abs(b));
@@ -54,7 +55,7 @@ SquareGrid coveringGrid(const GroundRect& extent, double spacing, const SquareGr
         grid.north = anchor->north - std::floor((anchor->north - extent.north) / spacing + kRounding) * spacing;
     }
     const auto cells = [&](double length) {
-        return std::max<int64_t>(1, std::llround(std::ceil(length / spacing - kRounding)));
+        return static_cast<int64_t>(std::clamp(std::ceil(length / spacing - kRounding), 1.0, kMostCells));
     };
     grid.size = {cells(extent.east - grid.west), cells(grid.north - extent.south)};
     return grid;

@@ -51,7 +51,8 @@ struct SquareGrid {
 [[nodiscard]] bool shareGrid(const GeoTransform& a, const GeoTransform& b);
 
 /// The least grid that covers `extent`; its lines go through the anchor's when there is one, else through the extent's
-/// upper-left corner. Overhangs below a millionth of a cell count as rounding and add no cell.
+/// upper-left corner. Overhangs below a millionth of a cell count as rounding and add no cell. A side has at most 10^15
+/// cells; who needs fewer must check.
 [[nodiscard]] SquareGrid coveringGrid(const GroundRect& extent, double spacing, const SquareGrid* anchor);
 
 /// The area that holds both.

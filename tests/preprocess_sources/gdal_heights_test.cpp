@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "preprocess/gdal_raster.h"
 #include "tests/preprocess_sources/raster_writer.h"
 
 namespace terray::test {
@@ -77,6 +78,23 @@ TEST_F(GdalHeights, KnowsWhereItLiesInDegrees) {
     const LonLat corner = lonLatOf("EPSG:32632", 500000, 5200000);
     EXPECT_NEAR(source->info().lonLatBounds->west, corner.longitude, 1e-6);
     EXPECT_NEAR(source->info().lonLatBounds->north, corner.latitude, 1e-6);
+}
+
+// PROJ sees the north pole and then no longer looks for the south pole.
+TEST_F(GdalHeights, KnowsThatAMapOfTheWholeEarthReachesBothPoles) {
+    const Crs wide = gdal::describeCrs("+proj=laea +lat_0=0 +lon_0=0 +datum=WGS84 +units=m +no_defs +type=crs");
+    const auto bounds = gdal::lonLatBounds({-1.27e7, -1.27e7, 1.27e7, 1.27e7}, wide.wkt);
+    ASSERT_TRUE(bounds);
+    EXPECT_EQ(*bounds, (GroundRect{-180, -90, 180, 90}));
+}
+
+TEST_F(GdalHeights, KnowsWherePolesAreNot) {
+    const auto bounds = gdal::lonLatBounds({500000, 5190000, 510000, 5200000}, gdal::describeCrs("EPSG:32632").wkt);
+    ASSERT_TRUE(bounds);
+    EXPECT_NEAR(bounds->west, 9, 1e-6);
+    EXPECT_LT(bounds->east, 9.2);
+    EXPECT_LT(bounds->north, 47);
+    EXPECT_FALSE(gdal::lonLatBounds({0, 0, 1, 1}, ""));
 }
 
 TEST_F(GdalHeights, MakesHolesOfNodataAndOfWhatIsNoNumber) {

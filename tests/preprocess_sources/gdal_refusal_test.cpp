@@ -121,6 +121,19 @@ TEST_F(GdalRefusal, RefusesASystemThatIsNotDefinedWhereTheRasterLies) {
     EXPECT_EQ(open().code, ExitCode::georeference);
 }
 
+// GDAL reads sizes modulo 2^32: 4,294,967,396 columns would become 100.
+TEST_F(GdalRefusal, RefusesASpacingThatMakesMoreCellsThanGdalCounts) {
+    HeightSourceOptions options;
+    options.files = {writeRaster((folder_ / "heights.tif").string(),
+                                 {.size = {10, 10}, .transform = northUp(500000, 5200000, 10), .crs = "EPSG:32632"})};
+    for (const double spacing : {100 / 4294967396.0, 1e-20}) {
+        options.spacing = spacing;
+        const Refusal refusal = refusalOf([&] { (void)openGdalHeights(options); });
+        EXPECT_EQ(refusal.code, ExitCode::input);
+        EXPECT_TRUE(refusal.says("coarser --spacing")) << refusal.message;
+    }
+}
+
 TEST_F(GdalRefusal, RefusesToMosaicWhatHasNoPlace) {
     useRaster(inZone32());
     RasterSpec plain = inZone32();

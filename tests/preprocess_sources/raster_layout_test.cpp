@@ -32,6 +32,13 @@ TEST(RasterLayout, CoversAnExtentWithoutASliver) {
     EXPECT_EQ(coveringGrid({0, 0, 10.1, 10}, 2.5, nullptr).size, (GridSize{5, 4}));
 }
 
+// A count beyond 64 bits once became a grid of one cell.
+TEST(RasterLayout, KeepsAnAbsurdSpacingAbsurd) {
+    const GridSize size = coveringGrid({0, 0, 1e5, 1e5}, 1e-20, nullptr).size;
+    EXPECT_GT(size.width, int64_t{1} << 40);
+    EXPECT_GT(size.height, int64_t{1} << 40);
+}
+
 TEST(RasterLayout, AlignsToAnAnchor) {
     const SquareGrid anchor{.west = 100, .north = 200, .spacing = 10, .size = {5, 5}};
     const SquareGrid grid = coveringGrid({83, 101, 155, 212}, 10, &anchor);
