@@ -189,18 +189,18 @@ void CommandLine::refuseUnknown(const std::string& name) const {
         if (nearest == nullptr || distance < nearestDistance) nearest = &option;
         nearestDistance = distance;
     }
-    refuse(program_ + ": unknown option " + name +
+    refuse("unknown option " + name +
            (nearest != nullptr ? ", did you mean " + nearest->name + "?" : " (--help lists the options)"));
 }
 
 void CommandLine::give(Declared& option, const std::string& value) {
-    if (option.seen && !option.takesMany) refuse(program_ + ": " + option.name + " is given twice");
+    if (option.seen && !option.takesMany) refuse(option.name + " is given twice");
     option.seen = true;
     if (option.given != nullptr) *option.given = true;
     try {
         option.assign(value);
     } catch (const Error& error) {
-        refuse(program_ + ": " + option.name + ": \"" + value + "\" " + error.what());
+        refuse(option.name + ": \"" + value + "\" " + error.what());
     }
 }
 
@@ -210,7 +210,7 @@ void CommandLine::givePositional(const std::string& value) {
         give(option, value);
         return;
     }
-    refuse(program_ + ": unexpected argument \"" + value + "\"");
+    refuse("unexpected argument \"" + value + "\"");
 }
 
 size_t CommandLine::giveOption(const std::vector<std::string>& arguments, size_t index) {
@@ -223,7 +223,7 @@ size_t CommandLine::giveOption(const std::vector<std::string>& arguments, size_t
 
     const bool isFlag = found->valueName.empty();
     if (equals != std::string::npos) {
-        if (isFlag) refuse(program_ + ": " + name + " takes no value");
+        if (isFlag) refuse(name + " takes no value");
         give(*found, argument.substr(equals + 1));
         return index + 1;
     }
@@ -235,7 +235,7 @@ size_t CommandLine::giveOption(const std::vector<std::string>& arguments, size_t
     size_t next = first;
     while (next < arguments.size() && !looksLikeOption(arguments[next]) && (next == first || found->takesMany))
         give(*found, arguments[next++]);
-    if (next == first) refuse(program_ + ": " + name + " needs a value: " + name + " " + found->valueName);
+    if (next == first) refuse(name + " needs a value: " + name + " " + found->valueName);
     return next;
 }
 
@@ -259,7 +259,7 @@ bool CommandLine::parse(const std::vector<std::string>& arguments) {
     for (const Declared& option : options_) {
         if (!option.isRequired || option.seen) continue;
         const std::string value = option.valueName.empty() ? "" : " " + option.valueName;
-        refuse(program_ + ": " + option.name + value + " is missing (" + option.help + ")");
+        refuse(option.name + value + " is missing (" + option.help + ")");
     }
     return true;
 }

@@ -13,7 +13,7 @@ namespace terray {
 /// Ours because the bench must build without further libraries (preset bench-minimal). Accepts `--name value`,
 /// `--name=value`, `--` before positional arguments that start with a dash; negative numbers are values. Every option
 /// may stand anywhere. Unknown, repeated, valueless or badly formed options throw Error(usage) with the nearest known
-/// name.
+/// name. Messages do not name the program: its main() does.
 ///
 ///     CommandLine line("terray-preprocess synth", "Builds a procedural dataset.");
 ///     line.option("--size", size, "N", "samples along a side").required();

@@ -103,21 +103,21 @@ TEST(CommandLine, TakesNegativeNumbersAndASingleDashAsValues) {
 }
 
 TEST(CommandLine, NamesTheNearestOption) {
-    EXPECT_EQ(Sample().complaint({"--ot", "x"}), "tool build: unknown option --ot, did you mean --out?");
-    EXPECT_EQ(Sample().complaint({"--sclae=2"}), "tool build: unknown option --sclae, did you mean --scale?");
+    EXPECT_EQ(Sample().complaint({"--ot", "x"}), "unknown option --ot, did you mean --out?");
+    EXPECT_EQ(Sample().complaint({"--sclae=2"}), "unknown option --sclae, did you mean --scale?");
     EXPECT_EQ(Sample().complaint({"--entirely-different"}),
-              "tool build: unknown option --entirely-different (--help lists the options)");
+              "unknown option --entirely-different (--help lists the options)");
     EXPECT_NE(Sample().complaint({"-o", "x"}), "");
 }
 
 TEST(CommandLine, RefusesWhatIsMissingRepeatedOrTooMuch) {
-    EXPECT_EQ(Sample().complaint({"in"}), "tool build: --out DIR is missing (where to write)");
-    EXPECT_EQ(Sample().complaint({"--out", "a", "--out", "b"}), "tool build: --out is given twice");
-    EXPECT_EQ(Sample().complaint({"--force", "--force"}), "tool build: --force is given twice");
-    EXPECT_EQ(Sample().complaint({"--out"}), "tool build: --out needs a value: --out DIR");
-    EXPECT_EQ(Sample().complaint({"--out", "--force"}), "tool build: --out needs a value: --out DIR");
-    EXPECT_EQ(Sample().complaint({"--imagery", "--out", "o"}), "tool build: --imagery needs a value: --imagery FILE");
-    EXPECT_EQ(Sample().complaint({"--force=yes"}), "tool build: --force takes no value");
+    EXPECT_EQ(Sample().complaint({"in"}), "--out DIR is missing (where to write)");
+    EXPECT_EQ(Sample().complaint({"--out", "a", "--out", "b"}), "--out is given twice");
+    EXPECT_EQ(Sample().complaint({"--force", "--force"}), "--force is given twice");
+    EXPECT_EQ(Sample().complaint({"--out"}), "--out needs a value: --out DIR");
+    EXPECT_EQ(Sample().complaint({"--out", "--force"}), "--out needs a value: --out DIR");
+    EXPECT_EQ(Sample().complaint({"--imagery", "--out", "o"}), "--imagery needs a value: --imagery FILE");
+    EXPECT_EQ(Sample().complaint({"--force=yes"}), "--force takes no value");
 
     CommandLine bare("tool", "Does nothing.");
     EXPECT_THROW((void)bare.parse({"stray"}), Error);
@@ -134,7 +134,7 @@ TEST(CommandLine, RefusesBadlyFormedValues) {
                                  "--size=0x480",   "--size=640x65537", "--size=640x480x2",
                                  "--size=-640x480"})
         EXPECT_NE(Sample().complaint({argument, "--out=o"}), "") << argument;
-    EXPECT_EQ(Sample().complaint({"--jobs=many"}), "tool build: --jobs: \"many\" is not a whole number");
+    EXPECT_EQ(Sample().complaint({"--jobs=many"}), "--jobs: \"many\" is not a whole number");
 }
 
 TEST(CommandLine, ReadsByteSuffixes) {
