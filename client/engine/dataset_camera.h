@@ -13,8 +13,8 @@ namespace terray {
 /// coordinate system.
 [[nodiscard]] std::optional<Projection> projectionOf(const DatasetMetadata& metadata);
 
-/// A camera that has the whole dataset in its picture: from the south, looking north and 40 degrees down, far enough
-/// away for the sphere around ground and heights to fit into the narrower field of view.
+/// A camera that has the whole dataset in its picture: from the south, looking north and 40 degrees down, every corner
+/// of the box around ground and heights within the middle nine tenths of the picture.
 /// @param aspect  width of the picture by its height
 [[nodiscard]] Camera overviewCamera(const DatasetMetadata& metadata, double aspect);
 

@@ -1,5 +1,6 @@
 #include "client/stream/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -7,6 +8,8 @@
 #include <optional>
 #include <string_view>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "common/check.h"
 
@@ -107,6 +110,22 @@ View viewOf(const Camera& camera, int width, int height) {
         .width = width,
         .height = height,
     };
+}
+
+Camera framing(Camera camera, const glm::dvec3& low, const glm::dvec3& high, double aspect, double share) {
+    const View view = viewOf(camera, 1, 1);
+    const double tanHalfWidth = view.tanHalfHeight * aspect;
+    const glm::dvec3 centre = (low + high) / 2.0;
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 place(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
+        const glm::dvec3 fromCentre = place - centre;
+        const double across = std::abs(glm::dot(fromCentre, view.right)) / tanHalfWidth;
+        const double along = std::abs(glm::dot(fromCentre, view.up)) / view.tanHalfHeight;
+        distance = std::max(distance, std::max(across, along) / share - glm::dot(fromCentre, view.forward));
+    }
+    camera.position = centre - distance * view.forward;
+    return camera;
 }
 
 Result<Camera> parseCamera(const std::string& text, const Projection* projection) {

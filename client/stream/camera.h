@@ -25,6 +25,11 @@ struct Camera {
 /// (down: its top looks to the heading; up: its top looks away from it).
 [[nodiscard]] View viewOf(const Camera& camera, int width, int height);
 
+/// Where a camera must stand, looking as `camera` does, to have a box whole in its picture: backed off along the view
+/// axis from the box's centre until every corner lies in the middle `share` (0..1) of width and height.
+/// @param low, high  the box's corners  @param aspect  width of the picture by its height
+[[nodiscard]] Camera framing(Camera camera, const glm::dvec3& low, const glm::dvec3& high, double aspect, double share);
+
 /// A camera as people write it: "lon,lat,height_m,heading_deg,pitch_deg[,fov_deg]", heading from TRUE north. With no
 /// `projection` (a plain image, or a build without PROJ) the first two numbers are the dataset's x and y in metres and
 /// heading counts from the y axis. Fails on anything but five or six finite numbers in their ranges, naming the

@@ -215,12 +215,8 @@ Flight loadFlight(const std::filesystem::path& path) {
 }
 
 void saveFlight(const Flight& flight, const std::filesystem::path& path, const Projection* projection) {
-    auto temporary = path;
-    temporary += ".part";
     const std::string text = toJson(flight, projection).dump(2) + "\n";
-    OutputFile file(temporary);
-    file.write(std::as_bytes(std::span(text)));
-    file.publish(path);
+    writeWholeFile(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace terray

@@ -38,10 +38,12 @@ struct Flight {
 void saveFlight(const Flight& flight, const std::filesystem::path& path, const Projection* projection);
 
 /// A standard flight derived from a dataset's extent and heights, so that runs on one dataset compare: an overview from
-/// outside, a descent, a low pass over rough ground looking ahead, a turn, a climb, a look straight down, a sweep of
-/// the horizon. The camera stays above the ground it flies over by a clearance taken from the data: at
-/// least 0.6 % of the extent (checked 30 times a second of the flight). `dataset` is left empty for the caller to name
-/// it. Reads up to five coarse tiles; throws Error(dataset) when one is damaged. @param seconds  > 0
+/// outside with all of the ground across a 16:9 picture, a descent, a low pass over rough ground looking ahead, a turn,
+/// a climb, a look straight down, the dataset's edge from low height, a sweep of the horizon. Ground without large
+/// holes and at most twice as long as wide fills at least 15 % of such a picture at any time. The camera stays above
+/// the ground it flies over by a clearance taken from the data: at least 0.6 % of the extent (checked 30 times a second
+/// of the flight). `dataset` is left empty for the caller to name it. Reads up to five coarse tiles; throws
+/// Error(dataset) when one is damaged. @param seconds  > 0
 [[nodiscard]] Flight standardTour(const TileSource& source, double seconds);
 
 }  // namespace terray

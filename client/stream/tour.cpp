@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "client/stream/flight.h"
@@ -53,13 +54,19 @@ class Planner {
     [[nodiscard]] double passLength() const { return 0.3 * extent_; }
     [[nodiscard]] glm::dvec2 roughestDirection() const;
     [[nodiscard]] Camera low(glm::dvec2 place, Radians heading, double pitchDegrees) const;
+    /// The nearest place that has a tenth of the ground's width and height between it and the edges.
+    [[nodiscard]] glm::dvec2 wellInside(glm::dvec2 place) const {
+        const glm::dvec2 half(0.4 * width_, 0.4 * height_);
+        return glm::clamp(place, middle_ - half, middle_ + half);
+    }
     [[nodiscard]] glm::dvec3 over(glm::dvec2 place, double extents) const {
         return {place, map_.highest() + extents * extent_};
     }
     [[nodiscard]] Camera straightDown(glm::dvec2 place, Radians heading) const {
         return {.position = over(place, 0.2), .heading = heading, .pitch = Radians(-kPi / 2)};
     }
-    /// The middle of the nearest edge that the pass points to, and the way out there.
+    [[nodiscard]] Camera overview(double turnDegrees) const;
+    /// The edge that the pass points to: a place on it beside the summit, and the way out there.
     struct Edge {
         glm::dvec2 place;
         glm::dvec2 outward;
@@ -103,10 +110,22 @@ Planner::Edge Planner::edgeAhead() const {
     return {across * summit_ + glm::abs(outward) * middle_ + outward * half, outward};
 }
 
+/// All of the ground across the picture's width, from outside one of its longer sides: that from which the view goes
+/// along with the pass.
+Camera Planner::overview(double turnDegrees) const {
+    constexpr double kAspect = 16.0 / 9, kShare = 0.95;
+    const glm::dvec2 ahead =
+        width_ >= height_ ? glm::dvec2(0, along_.y < 0 ? -1 : 1) : glm::dvec2(along_.x < 0 ? -1 : 1, 0);
+    const GroundRect& ground = map_.bounds();
+    return framing({.heading = headingAlong(ahead) + radiansFromDegrees(turnDegrees), .pitch = radiansFromDegrees(-30)},
+                   {ground.west, ground.south, map_.lowest()}, {ground.east, ground.north, map_.highest()}, kAspect,
+                   kShare);
+}
+
 std::vector<FlightKey> Planner::waypoints(double seconds) const {
     const glm::dvec2 side(along_.y, -along_.x);  // to the right of the pass
-    const glm::dvec2 entry = summit_ - 0.5 * passLength() * along_, exit = summit_ + 0.5 * passLength() * along_;
-    const glm::dvec3 centre(middle_, map_.lowest());
+    const glm::dvec2 entry = wellInside(summit_ - 0.5 * passLength() * along_);
+    const glm::dvec2 exit = wellInside(summit_ + 0.5 * passLength() * along_);
     const glm::dvec3 peak(summit_, map_.highestNear(summit_, map_.cellSide()));
     const Radians ahead = headingAlong(along_);
     const Edge edge = edgeAhead();
@@ -114,28 +133,28 @@ std::vector<FlightKey> Planner::waypoints(double seconds) const {
     const glm::dvec2 inside = edge.place - 0.08 * extent_ * edge.outward;
     Camera down = straightDown(summit_ + 0.05 * extent_ * along_, ahead);
     down.heading = ahead + radiansFromDegrees(20);
-    Camera back = low(edge.place, outward + Radians(kPi), -8);  // at the edge's height, but outside
+    Camera back = low(edge.place, outward + Radians(kPi), -12);  // at the edge's height, but outside
     back.position += glm::dvec3(0.04 * extent_ * edge.outward, 0);
 
     std::vector<std::pair<double, Camera>> plan{
-        {0.00, lookingAt(over(middle_ - 1.3 * extent_ * along_, 0.6), centre)},  // overview from outside
-        {0.12, lookingAt(over(middle_ - 1.1 * extent_ * along_ + 0.35 * extent_ * side, 0.45), centre)},
+        {0.00, overview(0)},  // from outside
+        {0.12, overview(15)},
         {0.19, lookingAt(over(entry - 0.3 * extent_ * along_, 0.12), peak)},  // descent
         {0.25, low(entry, ahead, -10)},                                       // low pass over rough ground
         {0.325, low(summit_, ahead, -8)},
         {0.40, low(exit, ahead, -10)},
-        {0.43, low(exit + 0.03 * extent_ * (along_ + side), ahead + Radians(kPi / 2), -8)},  // turn
-        {0.46, low(exit + 0.06 * extent_ * side, ahead + Radians(kPi), -8)},
+        {0.43, low(wellInside(exit + 0.03 * extent_ * (along_ + side)), ahead + Radians(kPi / 2), -8)},  // turn
+        {0.46, low(wellInside(exit + 0.06 * extent_ * side), ahead + Radians(kPi), -8)},
         {0.53, lookingAt(over(exit, 0.1), peak)},  // climb
         {0.57, straightDown(summit_, ahead)},      // straight down
         {0.63, down},
-        {0.71, low(inside, outward, -12)},  // out over the edge, low
-        {0.76, low(edge.place, outward + Radians(kPi / 3), -10)},
+        {0.71, low(inside, outward, -20)},  // low, over the edge, then along it with the ground on the right
+        {0.76, low(edge.place, outward + radiansFromDegrees(115), -12)},
         {0.80, back},
-        {0.84, low(inside, outward + Radians(kPi), -3)},  // sweep of the horizon
+        {0.84, low(inside, outward + Radians(kPi), -5)},  // sweep of the horizon
     };
     for (int quarter = 1; quarter <= 4; ++quarter)
-        plan.emplace_back(0.84 + 0.04 * quarter, low(inside, outward + Radians(kPi + quarter * kPi / 2), -3));
+        plan.emplace_back(0.84 + 0.04 * quarter, low(inside, outward + Radians(kPi + quarter * kPi / 2), -5));
 
     std::vector<FlightKey> keys;
     for (const auto& [share, camera] : plan) keys.push_back({share * seconds, camera});

@@ -113,6 +113,65 @@ TEST(Tour, HasAllItsPhases) {
     EXPECT_TRUE(std::all_of(std::begin(headings), std::end(headings), [](bool seen) { return seen; }));
 }
 
+TEST(Tour, BeginsWithAllOfTheGroundAcrossThePicture) {
+    for (const GridSize samples : {GridSize{1000, 1000}, {1200, 600}, {600, 1200}}) {
+        const FakeDataset dataset = buildDataset(hills(300), {.samples = samples, .spacing = 10});
+        const GroundRect ground = dataset.metadata.groundBounds();
+        const View view = viewOf(standardTour(FakeSource(dataset), 30).at(0), 1280, 720);
+        double left = 1, right = -1;  // in halves of the picture's width
+        for (const double x : {ground.west, ground.east})
+            for (const double y : {ground.south, ground.north}) {
+                const glm::dvec3 way = glm::dvec3(x, y, dataset.metadata.minHeight) - view.eye;
+                const double depth = glm::dot(way, view.forward);
+                ASSERT_GT(depth, 0);
+                const double across = glm::dot(way, view.right) / (depth * view.tanHalfWidth());
+                EXPECT_LT(std::abs(glm::dot(way, view.up)) / (depth * view.tanHalfHeight), 1);
+                left = std::min(left, across);
+                right = std::max(right, across);
+            }
+        EXPECT_GT(left, -1);
+        EXPECT_LT(right, 1);
+        EXPECT_GT(right - left, 2 * 0.8) << samples.width << " x " << samples.height;
+    }
+}
+
+/// Share of a picture's rays that meet the ground of a map, as a solid block of cells.
+double groundShare(const GroundMap& map, const View& view) {
+    const GroundRect& ground = map.bounds();
+    const double farthest = 4 * std::max(ground.east - ground.west, ground.north - ground.south);
+    int hits = 0;
+    for (int row = 0; row < view.height; ++row) {
+        for (int column = 0; column < view.width; ++column) {
+            const glm::dvec3 way = view.direction(column + 0.5, row + 0.5);
+            const double step = map.cellSide() / glm::length(glm::dvec2(way) + 1e-3);
+            for (double t = 0; t < farthest; t += step) {
+                const glm::dvec3 place = view.eye + t * way;
+                if (place.z > map.highest() && way.z >= 0) break;
+                const bool within =
+                    place.x > ground.west && place.x < ground.east && place.y > ground.south && place.y < ground.north;
+                if (!within || place.z > map.highestNear(glm::dvec2(place), 0)) continue;
+                ++hits;
+                break;
+            }
+        }
+    }
+    return hits / double(view.width * view.height);
+}
+
+TEST(Tour, HasGroundInViewAllTheTime) {
+    for (const GridSize samples : {GridSize{700, 700}, {900, 500}}) {
+        for (const double relief : {0.0, 300.0, 2000.0}) {
+            const FakeDataset dataset = buildDataset(hills(relief), {.samples = samples, .spacing = 30});
+            const FakeSource source(dataset);
+            const GroundMap map = GroundMap::read(source);
+            const Flight tour = standardTour(source, 30);
+            for (double t = 0; t <= 30; t += 0.5)
+                EXPECT_GE(groundShare(map, viewOf(tour.at(t), 16, 9)), 0.15)
+                    << "at " << t << " s, relief " << relief << ", " << samples.width << " x " << samples.height;
+        }
+    }
+}
+
 TEST(Tour, ScalesWithTheExtent) {
     const FakeDataset small = buildDataset(hills(10), {.samples = {256, 256}, .spacing = 1, .west = 0, .north = 0});
     const FakeDataset large =
