@@ -196,7 +196,6 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
     const Flight flight = loadFlight(options.flight);
     engineOptions(options, source->metadata());  // refuses what is out of range before anything is created
 
-    catchInterrupts();
     RunDirectory directory(options.out, options.pictures, options.force);
     const HeadlessContext context;
     requireRendererFeatures();
@@ -205,7 +204,9 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
     replay.run();
     replay.table().finish();
     writeJson(directory.summary(), replay.summary());
+    throwIfInterrupted();
     writeJson(directory.manifest(), manifest);
+    directory.keep();
     printResult(replay, replay.table(), directory, !options.noStatistics);
     return ExitCode::ok;
 }

@@ -29,23 +29,26 @@ RunDirectory::RunDirectory(fs::path path, bool withFrames, bool force) : path_(s
                                               " (give --force to replace it)");
     existed_ = fs::exists(path_, ignored);
     create(path_);
-    if (force) removeEarlierRun();
+    if (force) removeRun();
     if (withFrames) create(frames());
 }
 
 RunDirectory::~RunDirectory() {
-    std::error_code notEmpty;  // then they stay
-    fs::remove(frames(), notEmpty);
+    if (kept_) return;
+    removeRun();
+    std::error_code notEmpty;  // then it stays
     if (!existed_) fs::remove(path_, notEmpty);
 }
 
-void RunDirectory::removeEarlierRun() const {
+void RunDirectory::removeRun() const {
     std::error_code failure;
     for (const fs::path& file : {table(), summary(), manifest()}) fs::remove(file, failure);
     if (!fs::is_directory(frames(), failure)) return;
-    for (const fs::directory_entry& entry : fs::directory_iterator(frames())) {
-        const std::string name = entry.path().filename().string();
-        if (name.starts_with("frame_") && name.ends_with(".png")) fs::remove(entry.path(), failure);
+    std::error_code unreadable;
+    for (fs::directory_iterator entry(frames(), unreadable), end; !unreadable && entry != end;
+         entry.increment(unreadable)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with("frame_") && name.ends_with(".png")) fs::remove(entry->path(), failure);
     }
     fs::remove(frames(), failure);
 }

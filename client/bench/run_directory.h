@@ -11,10 +11,13 @@ class RunDirectory {
     /// Creates the directory, unless it exists. Throws Error(output) when that fails, or when an earlier run lies in it
     /// and `force` is not set; with `force` the files of that run, and only those, are removed.
     RunDirectory(std::filesystem::path path, bool withFrames, bool force);
-    /// Removes the directories again that were made and stayed empty.
+    /// Without keep() removes again what the run wrote and the directories that were made for it.
     ~RunDirectory();
     RunDirectory(const RunDirectory&) = delete;
     RunDirectory& operator=(const RunDirectory&) = delete;
+
+    /// The run is whole: its files stay.
+    void keep() { kept_ = true; }
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] std::filesystem::path table() const;
@@ -25,10 +28,11 @@ class RunDirectory {
     [[nodiscard]] std::filesystem::path frame(size_t index) const;
 
   private:
-    void removeEarlierRun() const;
+    void removeRun() const;
 
     std::filesystem::path path_;
     bool existed_;
+    bool kept_ = false;
 };
 
 }  // namespace terray

@@ -4,6 +4,7 @@
 
 #include "client/bench/bench.h"
 #include "client/engine/dataset_camera.h"
+#include "client/engine/program.h"
 #include "client/stream/flight.h"
 #include "common/command_line.h"
 
@@ -29,6 +30,7 @@ ExitCode runTour(const std::vector<std::string>& arguments) {
     const std::unique_ptr<TileSource> source = openLocalDataset(dataset);
     const std::optional<Projection> projection = projectionOf(source->metadata());
     const Flight flight = standardTour(*source, seconds);
+    throwIfInterrupted();
     saveFlight(flight, out, projection ? &*projection : nullptr);
     std::printf("%s: %zu keys, %.1f seconds\n", out.c_str(), flight.keys.size(), flight.seconds());
     return ExitCode::ok;

@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
 
 namespace terray {
@@ -136,6 +137,7 @@ void Engine::State::stream() {
 void Engine::State::waitForTiles() {
     KeySet uploadedHere;  // a tile that was evicted again is not fetched twice: so the loop ends
     for (;;) {
+        throwIfInterrupted();
         resident.beginFrame();
         selectAndPin();
         std::vector<TileRequest> batch = attainable();

@@ -11,6 +11,21 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
+extern "C" void noteInterrupt(int) {
+    interrupted = 1;
+}
+
+/// Ctrl-C ends the run in order, a second one at once; a file grown too large is an error of that write, not the end of
+/// the program.
+void installSignals() {
+    struct sigaction action = {};
+    action.sa_handler = noteInterrupt;
+    action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
 void printVersion(const std::string& name) {
     const BuildInfo& info = buildInfo();
     const auto text = [](std::string_view view) { return std::string(view); };
@@ -27,6 +42,7 @@ int runProgram(const std::string& name, int argc, char** argv,
         printVersion(name);
         return static_cast<int>(ExitCode::ok);
     }
+    installSignals();
     try {
         return static_cast<int>(body(arguments));
     } catch (const Error& error) {
@@ -36,12 +52,6 @@ int runProgram(const std::string& name, int argc, char** argv,
         std::fprintf(stderr, "%s: internal error: %s\n", name.c_str(), error.what());
         return static_cast<int>(ExitCode::internal);
     }
-}
-
-void catchInterrupts() {
-    const auto note = [](int) { interrupted = 1; };
-    std::signal(SIGINT, note);
-    std::signal(SIGTERM, note);
 }
 
 void throwIfInterrupted() {

@@ -11,6 +11,7 @@
 #include "client/engine/dataset_camera.h"
 #include "client/engine/engine.h"
 #include "client/engine/engine_options.h"
+#include "client/engine/program.h"
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
 #include "client/stream/camera.h"
@@ -138,6 +139,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     Engine engine(*source, shaders, chosen, options.width, options.height);
     const FrameReport report = engine.drawFrame(camera, true);
     refuseFailures(report);
+    throwIfInterrupted();
     if (kind == PictureKind::png) {
         writePng(out, engine.targets().readSrgb().view());
     } else {

@@ -1,15 +1,14 @@
-#include "tests/preprocess/run_program.h"
+#include "tests/support/run_program.h"
 
 #include <cstdlib>
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tests/preprocess/test_dataset.h"
+#include "tests/common/temporary_directory.h"
 
 namespace terray {
 namespace {
@@ -23,20 +22,20 @@ namespace {
         const rlimit limit = {*run.maxFileBytes, *run.maxFileBytes};
         ::setrlimit(RLIMIT_FSIZE, &limit);
     }
-    ::execv(TERRAY_PREPROCESS_PROGRAM, arguments);
+    ::execv(arguments[0], arguments);
     std::_Exit(127);
 }
 
 std::string readText(const std::filesystem::path& path) {
-    const Bytes bytes = readFile(path);
+    const Bytes bytes = test::readFile(path);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 }  // namespace
 
-ProgramResult runPreprocessProgram(const ProgramRun& run) {
-    const TemporaryDirectory directory;
-    std::vector<std::string> words = {TERRAY_PREPROCESS_PROGRAM};
+ProgramResult execute(const ProgramRun& run) {
+    const test::TemporaryDirectory directory;
+    std::vector<std::string> words = {run.program};
     words.insert(words.end(), run.arguments.begin(), run.arguments.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());

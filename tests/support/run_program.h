@@ -11,10 +11,11 @@ namespace terray {
 
 /// How a program is run.
 struct ProgramRun {
+    std::string program;  ///< path of the executable
     std::vector<std::string> arguments;
-    std::optional<uint64_t> maxFileBytes;  ///< larger files cannot be written, as on a full disk
+    std::optional<uint64_t> maxFileBytes = {};  ///< larger files cannot be written, as on a full disk
     /// Asked again and again while the program runs; once true the program gets SIGINT.
-    std::function<bool()> interruptWhen;
+    std::function<bool()> interruptWhen = {};
 };
 
 struct ProgramResult {
@@ -23,7 +24,7 @@ struct ProgramResult {
     std::string err;
 };
 
-/// Runs terray-preprocess and waits for its end. No shell in between.
-[[nodiscard]] ProgramResult runPreprocessProgram(const ProgramRun& run);
+/// Runs a program and waits for its end. No shell in between.
+[[nodiscard]] ProgramResult execute(const ProgramRun& run);
 
 }  // namespace terray
