@@ -152,7 +152,6 @@ TEST(Picture, AnUnwritablePlaceIsAnOutputErrorThatLeavesNothing) {
 }
 
 TEST(Picture, AFullDiskIsAnOutputErrorThatLeavesNothing) {
-    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
     const TemporaryDirectory directory;
     // Both writers open NAME.partial; as a link to /dev/full it takes no byte.
     for (const char* name : {"a.png", "a.exr"}) {
