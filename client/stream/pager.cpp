@@ -107,6 +107,7 @@ struct Pager::State {
     [[nodiscard]] JobPtr begin(const TileKey& key);
     void fail(const TileKey& key, const std::string& message);
     void deliver(LoadedTile tile);
+    void dropUntaken(const KeySet& wanted);
     void finish(JobPtr job);
     void readLoop();
     void decodeLoop();
@@ -218,6 +219,16 @@ void Pager::State::deliver(LoadedTile tile) {
     ++count.delivered;
 }
 
+/// Cancels what has arrived, was not taken, and is not wanted any more; else a slow taker would gather tiles for ever.
+void Pager::State::dropUntaken(const KeySet& wanted) {
+    const auto dropped = std::erase_if(loaded, [&](const LoadedTile& tile) {
+        const TileKey key{tile.layer, tile.id};
+        return !wanted.contains(key) && untaken.erase(key) > 0;
+    });
+    count.delivered -= dropped;
+    count.cancelled += dropped;
+}
+
 /// Settles a request: all its parts are there, or one is lost.
 void Pager::State::finish(JobPtr job) {
     const Part* bad = nullptr;
@@ -319,6 +330,7 @@ void Pager::want(const std::vector<TileRequest>& wanted) {
         if (seen.insert(key).second) state_->accept(key, before.erase(key) > 0);
     }
     state_->count.cancelled += before.size();
+    state_->dropUntaken(seen);
     state_->ioWork.notify_one();
     if (state_->isSettled()) state_->settled.notify_all();
 }

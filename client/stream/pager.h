@@ -34,9 +34,9 @@ struct FailedTile {
 
 struct PagerStatistics {
     uint64_t requested = 0;  ///< put into the IO thread's queue; what stays wanted counts once
-    uint64_t delivered = 0;
+    uint64_t delivered = 0;  ///< taken, or waiting to be
     uint64_t failed = 0;
-    uint64_t cancelled = 0;  ///< dropped from the queue because no longer wanted
+    uint64_t cancelled = 0;  ///< no longer wanted before they were begun, or before they were taken
     uint64_t hostHits = 0;   ///< answered from main memory instead
     uint64_t bytesRead = 0;  ///< stored bytes read from the source
     uint64_t hostBytes = 0;  ///< held now
@@ -46,14 +46,16 @@ struct PagerStatistics {
 /// Brings wanted tiles from a source to main memory without ever blocking the render thread: one IO thread reads in
 /// order of priority, workers decode. All functions are for the render thread.
 ///
-/// The queue is replaced by each want(): what is no longer wanted and not yet begun is cancelled, duplicates join.
+/// The queue is replaced by each want(): what is no longer wanted and not yet begun is cancelled, and so is what has
+/// arrived but was not taken; duplicates join. So never more tiles wait to be taken than the last want() named and were
+/// in flight then.
 /// Imagery brings its ancestors along, since its mip chain is gathered from them. A tile whose bytes are damaged is
 /// read once more; one that failed is not asked for again in this session, its ancestor goes on standing in. Main
 /// memory is an LRU cache under hostBudgetBytes; a tile whose descendants are held is kept as long as they are, and
 /// tiles in flight are counted before they arrive. A budget too small for what is in flight delays requests; one
 /// request (a height tile, or a photo tile with the ancestors it lacks) always proceeds, and only it may exceed the
-/// budget. Tiles delivered belong to whoever takes them: they no longer count once the cache has let them go. At any
-/// time requested + hostHits = delivered + failed + cancelled + what is queued or in flight.
+/// budget. Tiles delivered, taken or not, no longer count once the cache has let them go. At any time requested +
+/// hostHits = delivered + failed + cancelled + what is queued or in flight.
 class Pager {
   public:
     Pager(const TileSource& source, const PagerOptions& options);

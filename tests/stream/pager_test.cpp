@@ -278,6 +278,28 @@ TEST(Pager, CancelsWhatIsNoLongerWantedAndNotYetBegun) {
     EXPECT_EQ(pager.takeLoaded(1000).size(), count.delivered);
 }
 
+TEST(Pager, DoesNotGatherTilesThatNobodyTakes) {
+    const FakeDataset& dataset = smallDataset();
+    const FaultySource source(dataset, 1, 0);
+    Pager pager(source, {.decodeThreads = 2});
+    for (const TileRequest& request : allTiles(dataset)) {  // a flight on which each frame wants another tile
+        pager.want({request});
+        pager.waitUntilSettled();
+        expectBalanced(pager.statistics());
+    }
+    const TileRequest last = allTiles(dataset).back();
+    EXPECT_EQ(pager.statistics().delivered, 1u);
+    const auto loaded = pager.takeLoaded(1000);
+    ASSERT_EQ(loaded.size(), 1u);
+    EXPECT_EQ(loaded[0].id, last.id);
+    pager.want({last});  // what was taken before is delivered again, what was dropped comes from main memory
+    pager.want(allTiles(dataset));
+    pager.waitUntilSettled();
+    EXPECT_EQ(pager.takeLoaded(1000).size(), allTiles(dataset).size());
+    EXPECT_EQ(source.order().size(), allTiles(dataset).size()) << "nothing was read twice";
+    expectBalanced(pager.statistics());
+}
+
 TEST(Pager, KeepsToItsBudgetAndGoesOnWhenThatIsTiny) {
     const FakeDataset& dataset = smallDataset();
     const auto all = allTiles(dataset);
