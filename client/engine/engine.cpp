@@ -17,6 +17,8 @@ namespace {
 /// by default, so reader and decoders stay busy; few enough that refinement follows the most urgent tiles and that
 /// tiles which have arrived take little memory.
 constexpr size_t kMaxPendingTiles = 64;
+/// Tiles that the tree may know before it forgets what is far from resident ones: about 25 MB.
+constexpr size_t kMaxKnownTiles = size_t{1} << 18;
 constexpr uint64_t kUnlimited = std::numeric_limits<uint64_t>::max();
 
 using KeySet = std::unordered_set<TileKey, TileKeyHash>;
@@ -192,6 +194,7 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     state.report = {};
     state.view = viewOf(camera, state.targets.width(), state.targets.height());
     state.timer.enter(GpuPass::upload);
+    state.resident.forgetBeyond(kMaxKnownTiles);
     if (waitForTiles) {
         state.waitForTiles();
     } else {

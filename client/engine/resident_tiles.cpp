@@ -57,12 +57,16 @@ void ResidentTiles::uploadRoot(const LoadedTile& root) {
     pending_.clear();
 }
 
-void ResidentTiles::accept(LoadedTile tile) {
+void ResidentTiles::learn(const LoadedTile& tile) {
     if (tile.layer == TileLayer::heights) {
         tree_.learn(*tile.heights);
     } else {
         tree_.learn(*tile.imagery);
     }
+}
+
+void ResidentTiles::accept(LoadedTile tile) {
+    learn(tile);
     const TileKey key{tile.layer, tile.id};
     if (!isResident(key)) pending_.insert_or_assign(key, std::move(tile));
 }
@@ -147,6 +151,7 @@ bool ResidentTiles::uploadOne(const LoadedTile& tile) {
         isHeights ? gpu_.uploadHeights(*tile.heights) : gpu_.uploadImagery(tile.id, *tile.imageryChain);
     if (!upload.done) return false;
     if (upload.evicted) setResident({tile.layer, *upload.evicted}, false);
+    learn(tile);  // the tree may have forgotten it while it waited
     setResident({tile.layer, tile.id}, true);
     if (isHeights) {
         gpu_.pinHeights(tile.id);

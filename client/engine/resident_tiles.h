@@ -41,6 +41,8 @@ class ResidentTiles {
     /// Drops what waits for upload and is not among `wanted` any more; the pager still has it while its budget allows.
     void keepOnly(const std::vector<TileRequest>& wanted);
 
+    /// Lets the tree forget what is far from resident tiles, as TileTree::forgetBeyond.
+    void forgetBeyond(size_t most) { tree_.forgetBeyond(most); }
     /// From now on nothing is pinned but the roots.
     void beginFrame();
     /// What a selection draws is not evicted until the next beginFrame(); the ancestors of it go last after that, since
@@ -56,6 +58,7 @@ class ResidentTiles {
   private:
     void loadRoots(const TileSource& source);
     void uploadRoot(const LoadedTile& root);
+    void learn(const LoadedTile& tile);
     /// @return whether a slot could be had
     bool uploadOne(const LoadedTile& tile);
     void setResident(const TileKey& key, bool resident);

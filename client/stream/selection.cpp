@@ -35,8 +35,15 @@ struct Shown {
     uint32_t heights = 0;
     uint32_t imagery = 0;
 };
-/// Shown::imagery where there is known to be no photo: nothing can be finer.
+/// Shown::imagery where there is known to be no photo, or none is asked for: nothing can be finer.
 constexpr uint32_t kNoPhoto = std::numeric_limits<uint32_t>::max();
+
+/// What a cell shows when it is drawn whole.
+Shown shownBy(const Cell& cell) {
+    const Choice& photo = cell.imagery;
+    const bool noPhoto = photo.settled && photo.exact && !photo.drawn;
+    return {cell.heights.drawn->level + 1, noPhoto ? kNoPhoto : photo.drawn ? photo.drawn->level + 1 : 0};
+}
 
 /// One traversal of the tree with tolerances multiplied by `coarsening`.
 class Traversal {
@@ -110,8 +117,8 @@ Shown Traversal::visit(Cell cell) {
     if (overflowed_) return {};
     const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground)};
     if (!frustum_.mayMeet(boxOf(cell.id, reach, tree_.tiling()))) return {};
-    const HeightRange own{cell.ground[4].bottom, cell.ground[4].top};
-    const Metres distance = distanceTo(boxOf(cell.id, own, tree_.tiling()), view_.eye);
+    const HeightRange heights{cell.ground[4].bottom, cell.ground[4].top};
+    const Metres distance = distanceTo(boxOf(cell.id, heights, tree_.tiling()), view_.eye);
     chooseHeights(cell, distance);
     chooseImagery(cell, distance);
     if (cell.heights.settled && cell.imagery.settled) return emit(cell, distance);
@@ -119,8 +126,8 @@ Shown Traversal::visit(Cell cell) {
     // Split; where that shows nothing finer, draw the one cell instead.
     const size_t before = result_.nodes.size();
     const Shown beneath = visitChildren(cell);
-    const bool finer = beneath.heights > cell.heights.drawn->level + 1 ||
-                       beneath.imagery > (cell.imagery.drawn ? cell.imagery.drawn->level + 1 : 0);
+    const Shown own = shownBy(cell);
+    const bool finer = beneath.heights > own.heights || beneath.imagery > own.imagery;
     if (finer || result_.nodes.size() == before) return beneath;
     result_.nodes.resize(before);
     return emit(cell, distance);
@@ -192,8 +199,7 @@ Shown Traversal::emit(const Cell& cell, Metres distance) {
     if (!frustum_.mayMeet(boxOf(cell.id, {node.minHeight, node.maxHeight}, tree_.tiling()))) return {};
     result_.nodes.push_back(node);
     overflowed_ = result_.nodes.size() > 4 * options_.maxNodes + 64;  // some may yet be merged, but not that many
-    const bool noPhoto = node.imageryExact && !node.imageryTile;
-    return {node.heightTile.level + 1, noPhoto ? kNoPhoto : node.imageryTile ? node.imageryTile->level + 1 : 0};
+    return shownBy(cell);
 }
 
 /// The selection with tolerances multiplied by `coarsening`, if maxNodes can hold it.

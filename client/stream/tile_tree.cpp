@@ -1,8 +1,31 @@
 #include "client/stream/tile_tree.h"
 
+#include <algorithm>
+#include <unordered_set>
+
 #include "common/check.h"
 
 namespace terray {
+namespace {
+
+/// Keeps the resident tiles, all above them, and the children of all these.
+template <class Tile>
+void keepAroundResident(std::unordered_map<TileId, Tile>& tiles) {
+    std::unordered_set<TileId> inUse;
+    for (const auto& [id, tile] : tiles) {
+        if (!tile.resident) continue;
+        TileId above = id;
+        while (inUse.insert(above).second && above.level > 0) above = above.parent();
+    }
+    std::erase_if(tiles, [&inUse](const auto& entry) {
+        const TileId& id = entry.first;
+        return !inUse.contains(id) && id.level > 0 && !inUse.contains(id.parent());
+    });
+    for (auto& [id, tile] : tiles)
+        if (!inUse.contains(id)) tile.childrenKnown = false;
+}
+
+}  // namespace
 
 TileTree::TileTree(const Tiling& tiling, uint32_t finestHeightLevel, std::optional<uint32_t> finestImageryLevel)
     : tiling_(tiling), finestHeightLevel_(finestHeightLevel), finestImageryLevel_(finestImageryLevel) {
@@ -42,6 +65,13 @@ void TileTree::setImageryResident(const TileId& id, bool resident) {
     const auto found = imagery_.find(id);
     TERRAY_CHECK(found != imagery_.end() && found->second.childrenKnown);
     found->second.resident = resident;
+}
+
+void TileTree::forgetBeyond(size_t most) {
+    if (knownTiles() <= std::max(most, 2 * keptLast_)) return;
+    keepAroundResident(heights_);
+    keepAroundResident(imagery_);
+    keptLast_ = knownTiles();
 }
 
 const TileTree::Heights* TileTree::heights(const TileId& id) const {

@@ -15,13 +15,14 @@ namespace terray {
 /// no index of the dataset (design, section 2: every tile describes its children).
 ///
 /// Knowledge of a tile (its record) is separate from residency (its samples are where the renderer can draw them).
-/// Residency is marked from outside. One thread.
+/// Residency is marked from outside. Knowledge of where the camera no longer is can be forgotten, so that a long flight
+/// takes bounded memory. One thread.
 class TileTree {
   public:
     struct Heights {
         HeightRecord record;
         double metresPerCode = 0;    ///< of its codes; 0 until the tile has arrived once
-        bool childrenKnown = false;  ///< the tile has arrived once, so its children's records are in the tree
+        bool childrenKnown = false;  ///< the tile has arrived, so its children's records are in the tree
         bool resident = false;       ///< on the GPU
     };
     struct Imagery {
@@ -44,6 +45,12 @@ class TileTree {
     void setHeightsResident(const TileId& id, bool resident);
     void setImageryResident(const TileId& id, bool resident);
 
+    /// Once more than `most` tiles are known, keeps the resident tiles, those above them, and what all these say of
+    /// their children. Selection then draws the same heights, may show a coarser photo in place of known absence, and
+    /// asks again for what it would look into. Costs time in proportion to what is known, and is put off until that has
+    /// doubled since the last time: where what is kept exceeds half of `most`, up to twice as much may be known.
+    void forgetBeyond(size_t most);
+
     /// What is known of a tile; nullptr when no loaded tile has spoken of it yet.
     [[nodiscard]] const Heights* heights(const TileId& id) const;
     [[nodiscard]] const Imagery* imagery(const TileId& id) const;
@@ -55,6 +62,7 @@ class TileTree {
     std::optional<uint32_t> finestImageryLevel_;
     std::unordered_map<TileId, Heights> heights_;
     std::unordered_map<TileId, Imagery> imagery_;
+    size_t keptLast_ = 0;  ///< known tiles after the last forgetting
 };
 
 }  // namespace terray

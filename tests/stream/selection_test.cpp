@@ -147,6 +147,66 @@ TEST(Selection, IsAPureFunction) {
     }
 }
 
+TEST(Selection, ACellThatShowsNothingFinerIsNotSplitWithoutImageryEither) {
+    const FakeDataset& dataset = hillyDataset();
+    TileTree tree = rootsOnly(dataset);
+    for (uint32_t quadrant = 0; quadrant < 4; ++quadrant) {  // known, but gone again
+        load(tree, dataset, TileLayer::heights, TileId{}.child(quadrant));
+        tree.setHeightsResident(TileId{}.child(quadrant), false);
+    }
+    const Selection selection = select(tree, closeUp(), {.useImagery = false});
+    ASSERT_EQ(selection.nodes.size(), 1u);
+    EXPECT_EQ(selection.nodes[0].cell, TileId{});
+    EXPECT_TRUE(requests(selection, TileLayer::heights, {2, 0, 0}));
+}
+
+TEST(Selection, DrawsTheSameHeightsAfterTheTreeHasForgotten) {
+    const FakeDataset& dataset = hillyDataset();
+    Random random(15);
+    for (int round = 0; round < 200; ++round) {
+        TileTree tree = randomTree(dataset, random);
+        const View view = randomView(dataset, random);
+        const Selection before = select(tree, view, {.useImagery = false});
+        const size_t known = tree.knownTiles();
+        tree.forgetBeyond(known);
+        EXPECT_EQ(tree.knownTiles(), known) << "not beyond the limit";
+        tree.forgetBeyond(0);
+        const Selection after = select(tree, view, {.useImagery = false});
+        ASSERT_EQ(after.nodes.size(), before.nodes.size());
+        EXPECT_TRUE(sameNodes(before, after));
+        for (const DrawNode& node : settle(tree, dataset, view, {}).nodes)
+            EXPECT_TRUE(node.heightsExact && node.imageryExact) << node.cell;
+    }
+}
+
+TEST(TileTree, ALongFlightKnowsABoundedNumberOfTiles) {
+    constexpr uint32_t kFinest = 12;
+    constexpr size_t kMost = 2000;
+    TileTree tree({}, kFinest, {});
+    HeightTile tile;
+    tile.record.exists = true;
+    for (HeightRecord& child : tile.children) child.exists = true;
+    const auto load = [&](const TileId& id) {
+        tile.id = id;
+        tree.learn(tile);
+        tree.setHeightsResident(id, true);
+    };
+    load({});
+    std::vector<TileId> below;  // resident tiles under the camera
+    for (uint32_t x = 0; x < 1u << kFinest; ++x) {
+        for (const TileId& id : below) tree.setHeightsResident(id, false);
+        below.clear();
+        for (uint32_t level = 1; level <= kFinest; ++level)
+            below.push_back(TileId{kFinest, x, 100}.ancestor(kFinest - level));
+        for (const TileId& id : below) load(id);
+        tree.forgetBeyond(kMost);
+        ASSERT_LE(tree.knownTiles(), kMost);
+        ASSERT_NE(tree.heights({kFinest, x, 100}), nullptr);
+    }
+    EXPECT_FALSE(tree.heights({1, 0, 0})->childrenKnown) << "left behind";
+    EXPECT_TRUE(tree.heights({1, 1, 0})->childrenKnown) << "above the camera";
+}
+
 TEST(Selection, FlatGroundWantsFinePhotosOnCoarseHeights) {
     const FakeDataset flat = buildDataset([](int64_t, int64_t) { return 100.0; }, {.imageryLevel = 4});
     const Selection selection = select(everything(flat), closeUp(), {});
