@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "preprocess/dataset_builder.h"
 #include "preprocess/raster_files.h"
 
 namespace terray {
@@ -47,7 +46,55 @@ class FunctionHeights final : public HeightSource {
     HeightGridInfo info_;
 };
 
+class FunctionColours final : public ColourReader {
+  public:
+    FunctionColours(const PhotoFunction& photo, const Tiling& tiling, uint32_t level)
+        : photo_(photo), tiling_(tiling), level_(level) {}
+    void read(const GridRect& window, GridView<Rgba> out) override {
+        const double texel = tiling_.spacing(level_);
+        for (int64_t y = 0; y < window.height; ++y)
+            for (int64_t x = 0; x < window.width; ++x)
+                out.at(x, y) = photo_(tiling_.west + (static_cast<double>(window.x + x) + 0.5) * texel,
+                                      tiling_.north - (static_cast<double>(window.y + y) + 0.5) * texel);
+    }
+
+  private:
+    const PhotoFunction& photo_;
+    Tiling tiling_;
+    uint32_t level_;
+};
+
+class FunctionPhoto final : public ColourSource {
+  public:
+    FunctionPhoto(PhotoFunction photo, const Tiling& tiling, GridSize samples, uint32_t level)
+        : photo_(std::move(photo)), tiling_(tiling), samples_(samples), level_(level) {}
+    [[nodiscard]] uint32_t level() const override { return level_; }
+    [[nodiscard]] GroundRect bounds() const override {
+        const double east = tiling_.west + static_cast<double>(samples_.width) * tiling_.finestSpacing;
+        const double south = tiling_.north - static_cast<double>(samples_.height) * tiling_.finestSpacing;
+        return {tiling_.west, south, east, tiling_.north};
+    }
+    [[nodiscard]] const std::vector<SourceFile>& files() const override { return files_; }
+    [[nodiscard]] std::unique_ptr<ColourReader> openReader() const override {
+        return std::make_unique<FunctionColours>(photo_, tiling_, level_);
+    }
+
+  private:
+    PhotoFunction photo_;
+    Tiling tiling_;
+    GridSize samples_;
+    uint32_t level_;
+    std::vector<SourceFile> files_;
+};
+
 }  // namespace
+
+ComputedDataset::ComputedDataset(const HeightFunction& heights, GridSize size, double spacing,
+                                 const PhotoFunction& photo, uint32_t photoLevel) {
+    build(FunctionHeights(heights, size, spacing), [&](const Tiling& tiling, const HeightGridInfo& info) {
+        return std::make_unique<FunctionPhoto>(photo, tiling, info.size, photoLevel);
+    });
+}
 
 ComputedDataset::ComputedDataset(const HeightFunction& heights, GridSize size, double spacing) {
     build(FunctionHeights(heights, size, spacing));
@@ -57,7 +104,7 @@ ComputedDataset::ComputedDataset(int64_t size, double spacing, uint64_t seed) {
     build(*makeSyntheticHeights({.size = size, .spacing = spacing, .seed = seed}));
 }
 
-void ComputedDataset::build(const HeightSource& heights) {
+void ComputedDataset::build(const HeightSource& heights, const OpenPhoto& openPhoto) {
     static std::atomic<int> counter = 0;
     parent_ = std::filesystem::path(testing::TempDir()) /
               ("terray_e2e_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
@@ -66,7 +113,7 @@ void ComputedDataset::build(const HeightSource& heights) {
     BuildRequest request;
     request.out = directory_;
     request.jobs = 2;
-    (void)buildDataset(heights, nullptr, request);
+    (void)buildDataset(heights, openPhoto, request);
     source_ = openLocalDataset(directory_);
 }
 

@@ -8,6 +8,7 @@
 #include "client/engine/engine.h"
 #include "client/render/gl_context.h"
 #include "client/stream/dataset_source.h"
+#include "preprocess/dataset_builder.h"
 #include "preprocess/raster_source.h"
 
 namespace terray {
@@ -15,12 +16,18 @@ namespace terray {
 /// Height in metres of sample (column, row) of the finest grid, or kNoHeight.
 using HeightFunction = std::function<float(int64_t column, int64_t row)>;
 
+/// Colour of the ground at a place (world, metres).
+using PhotoFunction = std::function<Rgba(double x, double y)>;
+
 /// A dataset built from a function into a temporary directory that goes with this object.
 ///
 /// The grid's upper-left corner is at (1000, 5000), away from 0 so that a lost offset shows.
 class ComputedDataset {
   public:
     ComputedDataset(const HeightFunction& heights, GridSize size, double spacing);
+    /// With a photo, its finest level `photoLevel`, over all of the ground.
+    ComputedDataset(const HeightFunction& heights, GridSize size, double spacing, const PhotoFunction& photo,
+                    uint32_t photoLevel);
     /// With terray-preprocess's own procedural terrain instead.
     ComputedDataset(int64_t size, double spacing, uint64_t seed);
     ~ComputedDataset();
@@ -32,7 +39,7 @@ class ComputedDataset {
     [[nodiscard]] GroundRect ground() const { return source_->metadata().groundBounds(); }
 
   private:
-    void build(const HeightSource& heights);
+    void build(const HeightSource& heights, const OpenPhoto& openPhoto = nullptr);
 
     std::filesystem::path parent_;
     std::filesystem::path directory_;
