@@ -1,8 +1,9 @@
 // march.glsl: first hit of a ray with the columns of a node, along the maximum mipmap of its height tile.
 // Frame: tile. Source: Dick, Krueger, Westermann 2009, sections 3.1 and 3.2.
 // Watertight: the ground is solid, so a ray that enters below the surface hits where it enters; cells are integers; t never
-// decreases; each pass of the loop either goes one level down or raises a cell coordinate, of which there are 1024, so
-// kMaxSteps is out of reach and a ray that reaches it is reported as a defect.
+// decreases; each pass of the loop either raises a cell coordinate or goes one level down. There are at most 1024 of the
+// former; each climbs at most one level, so with the 8 levels of the start there are at most 1032 of the latter.
+// A ray that reaches kMaxSteps is reported as a defect.
 #ifndef TERRAY_MARCH
 #define TERRAY_MARCH
 #include "heights.glsl"
@@ -11,8 +12,7 @@
 #include "math/column.glsl"
 #include "nodes.glsl"
 
-// 1024 cell steps, as many level steps up, and those plus 9 down.
-const int kMaxSteps = 3100;
+const int kMaxSteps = 1024 + 1032 + 1;
 
 struct March {
     bool hit;

@@ -40,7 +40,7 @@ class FrameTargets {
     [[nodiscard]] Grid<glm::vec4> readHits() const;
     /// Index of the node hit plus 1; 0 is sky.
     [[nodiscard]] Grid<uint32_t> readNodes() const;
-    /// Bits 0..15: steps of the pixel's ray over all nodes; bit 31: it ran out of steps. Needs FeatureSet::statistics.
+    /// Bits 0..30: steps of the pixel's ray over all nodes; bit 31: it ran out of steps. Needs FeatureSet::statistics.
     [[nodiscard]] Grid<uint32_t> readSteps() const;
     /// World normals (east, north, up), unit length, 0 where there is sky. Needs FeatureSet::normals.
     [[nodiscard]] Grid<glm::vec3> readNormals() const;

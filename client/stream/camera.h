@@ -26,7 +26,8 @@ struct Camera {
 [[nodiscard]] View viewOf(const Camera& camera, int width, int height);
 
 /// Where a camera must stand, looking as `camera` does, to have a box whole in its picture: backed off along the view
-/// axis from the box's centre until every corner lies in the middle `share` (0..1) of width and height.
+/// axis from the box's centre until every corner lies in the middle `share` (above 0; above 1 it may
+/// lie outside) of width and height.
 /// @param low, high  the box's corners  @param aspect  width of the picture by its height
 [[nodiscard]] Camera framing(Camera camera, const glm::dvec3& low, const glm::dvec3& high, double aspect, double share);
 

@@ -65,7 +65,7 @@ class Planner {
     [[nodiscard]] Camera straightDown(glm::dvec2 place, Radians heading) const {
         return {.position = over(place, 0.2), .heading = heading, .pitch = Radians(-kPi / 2)};
     }
-    [[nodiscard]] Camera overview(double turnDegrees) const;
+    [[nodiscard]] Camera overview(double turnDegrees, double share) const;
     /// The edge that the pass points to: a place on it beside the summit, and the way out there.
     struct Edge {
         glm::dvec2 place;
@@ -110,16 +110,16 @@ Planner::Edge Planner::edgeAhead() const {
     return {across * summit_ + glm::abs(outward) * middle_ + outward * half, outward};
 }
 
-/// All of the ground across the picture's width, from outside one of its longer sides: that from which the view goes
-/// along with the pass.
-Camera Planner::overview(double turnDegrees) const {
-    constexpr double kAspect = 16.0 / 9, kShare = 0.95;
+/// All of the ground across a share of the picture's width (above 1: the nearest corners lie outside it), from outside
+/// one of its longer sides: that from which the view goes along with the pass.
+Camera Planner::overview(double turnDegrees, double share) const {
+    constexpr double kAspect = 16.0 / 9;
     const glm::dvec2 ahead =
         width_ >= height_ ? glm::dvec2(0, along_.y < 0 ? -1 : 1) : glm::dvec2(along_.x < 0 ? -1 : 1, 0);
     const GroundRect& ground = map_.bounds();
     return framing({.heading = headingAlong(ahead) + radiansFromDegrees(turnDegrees), .pitch = radiansFromDegrees(-30)},
                    {ground.west, ground.south, map_.lowest()}, {ground.east, ground.north, map_.highest()}, kAspect,
-                   kShare);
+                   share);
 }
 
 std::vector<FlightKey> Planner::waypoints(double seconds) const {
@@ -137,8 +137,8 @@ std::vector<FlightKey> Planner::waypoints(double seconds) const {
     back.position += glm::dvec3(0.04 * extent_ * edge.outward, 0);
 
     std::vector<std::pair<double, Camera>> plan{
-        {0.00, overview(0)},  // from outside
-        {0.12, overview(15)},
+        {0.00, overview(0, 0.95)},  // from outside
+        {0.12, overview(12, 1.15)},
         {0.19, lookingAt(over(entry - 0.3 * extent_ * along_, 0.12), peak)},  // descent
         {0.25, low(entry, ahead, -10)},                                       // low pass over rough ground
         {0.325, low(summit_, ahead, -8)},

@@ -81,7 +81,7 @@ EngineOptions engineOptions(const ViewOptions& options, PictureKind kind, const 
 }
 
 MeasuredPicture measure(const Engine& engine) {
-    constexpr uint32_t kStepsMask = 0xffff;  // FrameTargets::readSteps
+    constexpr uint32_t kStepsMask = 0x7fffffff;  // FrameTargets::readSteps
     const FrameTargets& targets = engine.targets();
     const Grid<glm::vec4> hits = targets.readHits();
     const Grid<uint32_t> nodes = targets.readNodes();
