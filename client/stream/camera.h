@@ -25,10 +25,10 @@ struct Camera {
 /// (down: its top looks to the heading; up: its top looks away from it).
 [[nodiscard]] View viewOf(const Camera& camera, int width, int height);
 
-/// Where a camera must stand, looking as `camera` does, to have a box whole in its picture: backed off along the view
-/// axis from the box's centre until every corner lies in the middle `share` (above 0; above 1 it may
-/// lie outside) of width and height.
+/// Where a camera must stand, looking as `camera` does, to have a box in its picture: backed off along the view axis
+/// from the box's centre until every corner lies in the middle `share` of width and height.
 /// @param low, high  the box's corners  @param aspect  width of the picture by its height
+/// @param share      above 0; up to 1 the box is seen whole, above it the nearest corners lie outside
 [[nodiscard]] Camera framing(Camera camera, const glm::dvec3& low, const glm::dvec3& high, double aspect, double share);
 
 /// A camera as people write it: "lon,lat,height_m,heading_deg,pitch_deg[,fov_deg]", heading from TRUE north. With no
