@@ -59,6 +59,13 @@ glm::dvec3 sunDirection(const std::string& azimuthAndElevation) {
     return {std::sin(turn) * std::cos(rise), std::cos(turn) * std::cos(rise), std::sin(rise)};
 }
 
+PhotoFilter photoFilter(const std::string& name) {
+    if (name == "auto") return PhotoFilter::automatic;
+    if (name == "hardware") return PhotoFilter::hardware;
+    if (name == "probes") return PhotoFilter::probes;
+    refuse("--photo-filter", name, "auto, hardware or probes");
+}
+
 void EngineCommandLine::declare(CommandLine& line) {
     sun_ = degreesOf(RenderOptions().sunDirection);
     line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
@@ -66,6 +73,8 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.flag("--no-imagery", noImagery_, "ignore the dataset's photo");
     line.option("--sun", sun_, "AZIMUTH,ELEVATION", "degrees from grid north and above the horizon (" + sun_ + ")");
     line.option("--anisotropy", anisotropy_, "RATIO", "of photo sampling, 1 to 16 (16)");
+    line.option("--photo-filter", photoFilter_, "auto|hardware|probes",
+                "who filters photos anisotropically: auto takes probes in the shader on software rasterisers (auto)");
     line.bytes("--host-memory", hostMemory_, "for decoded tiles in main memory (1G)");
     line.bytes("--gpu-memory", gpuMemory_,
                "for tiles on the GPU, half to heights and half to the photo; all to heights without a photo (512M)");
@@ -91,6 +100,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.selection.useImagery = datasetHasImagery && !noImagery_;
     options.render.sunDirection = sunDirection(sun_);
     options.render.anisotropy = static_cast<float>(anisotropy_);
+    options.render.photoFilter = photoFilter(photoFilter_);
     options.render.occlusion = occlusion_ == "on";
     options.pager.hostBudgetBytes = hostMemory_;
     options.pager.decodeThreads = static_cast<int>(decodeThreads_);
@@ -102,17 +112,12 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
 }
 
 Json EngineCommandLine::toJson() const {
-    return Json::Object{{"tolerance", tolerance_},
-                        {"imagery-tolerance", imageryTolerance_},
-                        {"no-imagery", noImagery_},
-                        {"sun", sun_},
-                        {"anisotropy", anisotropy_},
-                        {"host-memory", hostMemory_},
-                        {"gpu-memory", gpuMemory_},
-                        {"upload-budget", uploadBudget_},
-                        {"decode-threads", decodeThreads_},
-                        {"occlusion", occlusion_},
-                        {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
+    return Json::Object{{"tolerance", tolerance_},        {"imagery-tolerance", imageryTolerance_},
+                        {"no-imagery", noImagery_},       {"sun", sun_},
+                        {"anisotropy", anisotropy_},      {"photo-filter", photoFilter_},
+                        {"host-memory", hostMemory_},     {"gpu-memory", gpuMemory_},
+                        {"upload-budget", uploadBudget_}, {"decode-threads", decodeThreads_},
+                        {"occlusion", occlusion_},        {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};
 }
 

@@ -32,6 +32,7 @@ class EngineCommandLine {
     bool noImagery_ = false;
     std::string sun_;
     double anisotropy_ = RenderOptions().anisotropy;
+    std::string photoFilter_ = "auto";
     uint64_t hostMemory_ = PagerOptions().hostBudgetBytes;
     uint64_t gpuMemory_ = EngineOptions().gpuHeightBytes + EngineOptions().gpuImageryBytes;
     uint64_t uploadBudget_ = EngineOptions().uploadBytesPerFrame;
@@ -44,5 +45,8 @@ class EngineCommandLine {
 /// The direction towards a sun given as "AZIMUTH,ELEVATION": degrees clockwise from grid north, and above the horizon
 /// (-90 .. 90). Unit length, world frame. Throws Error(usage) on anything else.
 [[nodiscard]] glm::dvec3 sunDirection(const std::string& azimuthAndElevation);
+
+/// The filter that "auto", "hardware" or "probes" names. Throws Error(usage) on anything else.
+[[nodiscard]] PhotoFilter photoFilter(const std::string& name);
 
 }  // namespace terray

@@ -38,6 +38,7 @@ TEST(EngineOptions, DefaultsAreThoseOfTheLibrary) {
     EXPECT_EQ(options.pager.hostBudgetBytes, library.pager.hostBudgetBytes);
     EXPECT_EQ(options.render.anisotropy, library.render.anisotropy);
     EXPECT_TRUE(options.render.occlusion);
+    EXPECT_EQ(options.render.photoFilter, PhotoFilter::automatic);
     // The default sun is printed with one decimal of a degree.
     const glm::dvec3 sun = glm::normalize(library.render.sunDirection);
     EXPECT_NEAR(glm::length(options.render.sunDirection - sun), 0, 0.002);
@@ -72,6 +73,7 @@ TEST(EngineOptions, OutOfRangeIsAUsageError) {
                                                                        {"--anisotropy", "17"},
                                                                        {"--decode-threads", "-1"},
                                                                        {"--occlusion", "maybe"},
+                                                                       {"--photo-filter", "none"},
                                                                        {"--sun", "10"},
                                                                        {"--sun", "10,91"},
                                                                        {"--sun", "10,20,30"},
