@@ -120,6 +120,8 @@ class HeightOpener {
     void inspectFiles() {
         for (const std::string& file : options_.files) {
             rasters_.push_back(gdal::inspect(file));
+            if (rasters_.back().bands > 1)
+                note("\"" + file + "\" has " + std::to_string(rasters_.back().bands) + " bands: heights are the first");
             if (rasters_.back().name != file) note("heights are taken from " + rasters_.back().name);
             for (const std::string& warning : rasters_.back().warnings)
                 note("GDAL warns about " + file + ": " + warning);

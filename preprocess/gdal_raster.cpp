@@ -15,11 +15,11 @@
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 #include <ogr_spatialref.h>
-#include <sys/stat.h>
 
 #include "common/check.h"
 #include "common/error.h"
 #include "preprocess/plain_image.h"
+#include "preprocess/raster_layout.h"
 
 namespace terray::gdal {
 
@@ -84,7 +84,9 @@ GDALDatasetUniquePtr openOrExplain(const std::string& file, const Messages& mess
         refuse("cannot read \"" + file + "\": the file is empty (0 bytes)");
     GDALDatasetUniquePtr dataset = open(file);
     if (dataset) return dataset;
-    if (exists) refuse("cannot read \"" + file + "\": it is no raster that GDAL can open (" + messages.text() + ")");
+    if (exists)
+        refuse("cannot read \"" + file + "\": it is no raster that GDAL can open, or is cut short (" + messages.text() +
+               ")");
     refuse("cannot read \"" + file + "\": there is no such file");
 }
 
@@ -134,19 +136,9 @@ Crs crsOf(const OGRSpatialReference* reference) {
     return crs;
 }
 
-/// netCDF files often leave their system unsaid but measure their axes in degrees, which the CF conventions define.
 bool hasDegreeAxes(GDALDataset& dataset) {
-    bool east = false;
-    bool north = false;
     const CPLStringList items(dataset.GetMetadata(), FALSE);
-    for (int i = 0; i < items.Count(); ++i) {
-        const std::string text(items[i]);
-        const size_t value = text.find("#units=degree");
-        if (value == std::string::npos) continue;
-        east = east || text.find("_e", value) != std::string::npos || text.find("_E", value) != std::string::npos;
-        north = north || text.find("_n", value) != std::string::npos || text.find("_N", value) != std::string::npos;
-    }
-    return east && north;
+    return namesDegreeAxes({items.List(), items.List() + items.Count()});
 }
 
 /// Bands of red, green and blue by their label, else the first three; a grey band three times.
@@ -170,11 +162,8 @@ std::optional<double> nodataOf(GDALRasterBand& band) {
 std::vector<SourceFile> filesOf(GDALDataset& dataset) {
     std::vector<SourceFile> files;
     const CPLStringList list(dataset.GetFileList(), TRUE);
-    for (int i = 0; i < list.Count(); ++i) {
-        struct stat status {};
-        if (stat(list[i], &status) == 0)
-            files.push_back({list[i], static_cast<uint64_t>(status.st_size), static_cast<int64_t>(status.st_mtime)});
-    }
+    for (int i = 0; i < list.Count(); ++i)
+        if (auto file = fileOnDisk(list[i])) files.push_back(std::move(*file));
     return files;
 }
 
@@ -182,6 +171,7 @@ void describeBands(GDALDataset& dataset, RasterFacts& facts) {
     GDALRasterBand& band = *dataset.GetRasterBand(1);
     const GDALDataType type = band.GetRasterDataType();
     const char* usedBits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
+    facts.bands = dataset.GetRasterCount();
     facts.isInteger = GDALDataTypeIsInteger(type) != 0;
     facts.bits = usedBits != nullptr ? std::atoi(usedBits) : GDALGetDataTypeSizeBits(type);
     facts.hasPalette = band.GetColorTable() != nullptr;

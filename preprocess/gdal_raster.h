@@ -23,8 +23,9 @@ struct RasterFacts {
     bool isPlacedHere = false;                 ///< geoTransform was given by Terray: GDAL has to be told
     Crs crs;                                   ///< wkt is empty when the file names none
     std::vector<int> colourBands;              ///< numbers of red, green, blue; of one grey band three times
-    bool isInteger = false;                    ///< type of the first band, as are the following
-    int bits = 32;                             ///< of a sample that count, such as 12 of 16
+    int bands = 1;
+    bool isInteger = false;  ///< type of the first band, as are the following
+    int bits = 32;           ///< of a sample that count, such as 12 of 16
     bool hasPalette = false;
     std::optional<std::array<double, 3>> colourNodata;  ///< of the colour bands, when each declares one
     std::optional<double> nodata;                       ///< in stored units

@@ -7,12 +7,12 @@
 
 #include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/imageio.h>
-#include <sys/stat.h>
 
 #include "common/check.h"
 #include "common/error.h"
 #include "preprocess/plain_image.h"
 #include "preprocess/raster_files.h"
+#include "preprocess/raster_layout.h"
 
 namespace terray {
 
@@ -115,12 +115,11 @@ class ImageHeights final : public HeightSource {
 };
 
 /// The file as it lies on disk; throws when it is missing or empty, which OpenImageIO does not tell apart.
-SourceFile fileOnDisk(const std::string& file) {
-    struct stat status {};
-    if (stat(file.c_str(), &status) != 0)
-        throw Error(ExitCode::input, "cannot read \"" + file + "\": there is no such file");
-    if (status.st_size == 0) throw Error(ExitCode::input, "cannot read \"" + file + "\": the file is empty (0 bytes)");
-    return {file, static_cast<uint64_t>(status.st_size), static_cast<int64_t>(status.st_mtime)};
+SourceFile requiredFile(const std::string& file) {
+    const std::optional<SourceFile> onDisk = fileOnDisk(file);
+    if (!onDisk) throw Error(ExitCode::input, "cannot read \"" + file + "\": there is no such file");
+    if (onDisk->bytes == 0) throw Error(ExitCode::input, "cannot read \"" + file + "\": the file is empty (0 bytes)");
+    return *onDisk;
 }
 
 std::optional<OIIO::ImageSpec> specOf(const std::string& file, std::string& reason) {
@@ -141,7 +140,7 @@ bool isReadableImage(const std::string& file) {
 std::unique_ptr<HeightSource> openImageHeights(const HeightSourceOptions& options) {
     TERRAY_CHECK(!options.files.empty());
     const std::string& file = options.files.front();
-    const SourceFile onDisk = fileOnDisk(file);
+    const SourceFile onDisk = requiredFile(file);
     if (options.files.size() > 1)
         throw Error(ExitCode::georeference,
                     "cannot mosaic \"" + file + "\" with other files: a plain image does not say where it lies");

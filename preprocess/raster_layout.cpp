@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <sys/stat.h>
+
 #include "common/check.h"
 
 namespace terray {
@@ -123,6 +125,24 @@ std::string describe(const GroundRect& extent, const std::string& crsName) {
     std::snprintf(text.data(), text.size(), "W %.10g, S %.10g, E %.10g, N %.10g", extent.west, extent.south,
                   extent.east, extent.north);
     return std::string(text.data()) + " (metres, " + (crsName.empty() ? "unnamed plane" : crsName) + ")";
+}
+
+bool namesDegreeAxes(const std::vector<std::string>& items) {
+    bool east = false;
+    bool north = false;
+    for (const std::string& text : items) {
+        const size_t value = text.find("#units=degree");
+        if (value == std::string::npos) continue;
+        east = east || text.find("_e", value) != std::string::npos || text.find("_E", value) != std::string::npos;
+        north = north || text.find("_n", value) != std::string::npos || text.find("_N", value) != std::string::npos;
+    }
+    return east && north;
+}
+
+std::optional<SourceFile> fileOnDisk(const std::string& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) return {};
+    return SourceFile{path, static_cast<uint64_t>(status.st_size), static_cast<int64_t>(status.st_mtime)};
 }
 
 }  // namespace terray

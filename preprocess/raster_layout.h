@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/dataset_metadata.h"
 #include "common/grid.h"
 #include "common/tiling.h"
 
@@ -68,6 +69,13 @@ struct SquareGrid {
 
 /// Metres in a unit of height as files write it ("m", "feet", "us-ft", "km"); none for an unknown or empty one.
 [[nodiscard]] std::optional<double> metresPerHeightUnit(std::string unit);
+
+/// Whether metadata items ("x#units=degrees_east") name both axes in degrees: netCDF files often leave their coordinate
+/// system unsaid but measure their axes so, as the CF conventions define.
+[[nodiscard]] bool namesDegreeAxes(const std::vector<std::string>& items);
+
+/// Size and time of a file; none when it is not there (as the parts of a virtual file system are not).
+[[nodiscard]] std::optional<SourceFile> fileOnDisk(const std::string& path);
 
 /// "W 557805, S 5107995, E 567615, N 5122035 (metres, EPSG:26710)", for messages.
 [[nodiscard]] std::string describe(const GroundRect& extent, const std::string& crsName);
