@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "client/render/frame_targets.h"
+
 namespace terray {
 
 RayStatistics measureRays(const Grid<uint32_t>& steps, const Grid<uint32_t>& nodes) {
-    constexpr uint32_t kCountMask = 0x7fffffff;  // the layout of FrameTargets::readSteps
-    constexpr uint32_t kOutOfSteps = 1u << 31;
     TERRAY_CHECK(steps.size() == nodes.size());
     RayStatistics result;
     result.rays = steps.cells().size();
@@ -15,9 +15,9 @@ RayStatistics measureRays(const Grid<uint32_t>& steps, const Grid<uint32_t>& nod
     counts.reserve(result.rays);
     uint64_t sum = 0;
     for (const uint32_t cell : steps.cells()) {
-        if ((cell & kCountMask) != 0) counts.push_back(cell & kCountMask);
-        sum += cell & kCountMask;
-        if ((cell & kOutOfSteps) != 0) ++result.outOfSteps;
+        if ((cell & kStepCountMask) != 0) counts.push_back(cell & kStepCountMask);
+        sum += cell & kStepCountMask;
+        if ((cell & kOutOfStepsBit) != 0) ++result.outOfSteps;
     }
     for (const uint32_t node : nodes.cells())
         if (node != 0) ++result.hit;

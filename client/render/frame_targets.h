@@ -18,6 +18,10 @@ enum class ColourFormat : uint8_t {
     linearFloat,  ///< linear half floats, for EXR
 };
 
+/// What a cell of FrameTargets::readSteps holds: the number of steps, and whether the ray ran out of them.
+inline constexpr uint32_t kStepCountMask = 0x7fffffff;
+inline constexpr uint32_t kOutOfStepsBit = 0x80000000;
+
 /// The textures that a frame is drawn into. Sizes in pixels; row 0 of every texture is the BOTTOM of the picture (GL),
 /// the read-back functions turn that round: row 0 of their grids is the top.
 ///
@@ -40,7 +44,7 @@ class FrameTargets {
     [[nodiscard]] Grid<glm::vec4> readHits() const;
     /// Index of the node hit plus 1; 0 is sky.
     [[nodiscard]] Grid<uint32_t> readNodes() const;
-    /// Bits 0..30: steps of the pixel's ray over all nodes; bit 31: it ran out of steps. Needs FeatureSet::statistics.
+    /// Steps of the pixel's ray over all nodes (kStepCountMask), and kOutOfStepsBit. Needs FeatureSet::statistics.
     [[nodiscard]] Grid<uint32_t> readSteps() const;
     /// World normals (east, north, up), unit length, 0 where there is sky. Needs FeatureSet::normals.
     [[nodiscard]] Grid<glm::vec3> readNormals() const;

@@ -81,7 +81,6 @@ EngineOptions engineOptions(const ViewOptions& options, PictureKind kind, const 
 }
 
 MeasuredPicture measure(const Engine& engine) {
-    constexpr uint32_t kStepsMask = 0x7fffffff;  // FrameTargets::readSteps
     const FrameTargets& targets = engine.targets();
     const Grid<glm::vec4> hits = targets.readHits();
     const Grid<uint32_t> nodes = targets.readNodes();
@@ -96,7 +95,7 @@ MeasuredPicture measure(const Engine& engine) {
                             .steps = Grid<uint32_t>(size),
                             .hit = Grid<uint32_t>(size)};
     for (size_t n = 0; n < hits.cells().size(); ++n) {
-        picture.steps.cells()[n] = steps.cells()[n] & kStepsMask;
+        picture.steps.cells()[n] = steps.cells()[n] & kStepCountMask;
         const uint32_t nodeNumber = nodes.cells()[n];
         if (nodeNumber == 0) continue;
         const DrawNode& node = engine.nodes().at(nodeNumber - 1);

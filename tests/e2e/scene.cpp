@@ -141,7 +141,7 @@ Camera cameraAt(glm::dvec3 position, double headingDegrees, double pitchDegrees,
 int64_t raysOutOfSteps(const FrameTargets& targets) {
     int64_t count = 0;
     const Grid<uint32_t> steps = targets.readSteps();
-    for (const uint32_t ofPixel : steps.cells()) count += ofPixel >> 31;
+    for (const uint32_t ofPixel : steps.cells()) count += (ofPixel & kOutOfStepsBit) != 0 ? 1 : 0;
     return count;
 }
 
