@@ -13,32 +13,41 @@
 
 namespace terray::mathf {
 using real = float;
-using glm::abs, glm::floor, glm::length, glm::max, glm::min;
+using glm::abs, glm::floor, glm::length, glm::max, glm::min, glm::sqrt;
 using ivec2 = glm::ivec2;
 using vec2 = glm::vec<2, real>;
 using vec3 = glm::vec<3, real>;
+#include "math/bend.glsl"
 #include "math/box.glsl"
 #include "math/cell_walk.glsl"
 #include "math/column.glsl"
+#include "math/contact.glsl"
 #include "math/footprint.glsl"
+#include "math/patch.glsl"
 }  // namespace terray::mathf
 
 #undef TERRAY_MATH_PORTABLE
+#undef TERRAY_MATH_BEND
 #undef TERRAY_MATH_BOX
 #undef TERRAY_MATH_CELL_WALK
 #undef TERRAY_MATH_COLUMN
+#undef TERRAY_MATH_CONTACT
 #undef TERRAY_MATH_FOOTPRINT
+#undef TERRAY_MATH_PATCH
 
 namespace terray::mathd {
 using real = double;
-using glm::abs, glm::floor, glm::length, glm::max, glm::min;
+using glm::abs, glm::floor, glm::length, glm::max, glm::min, glm::sqrt;
 using ivec2 = glm::ivec2;
 using vec2 = glm::vec<2, real>;
 using vec3 = glm::vec<3, real>;
+#include "math/bend.glsl"
 #include "math/box.glsl"
 #include "math/cell_walk.glsl"
 #include "math/column.glsl"
+#include "math/contact.glsl"
 #include "math/footprint.glsl"
+#include "math/patch.glsl"
 }  // namespace terray::mathd
 
 #undef REAL
