@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <GeographicLib/Ellipsoid.hpp>
 #include <GeographicLib/Geodesic.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
@@ -24,6 +25,23 @@ Metres geodesicDistance(LonLat from, LonLat to) {
     double metres = 0;
     GeographicLib::Geodesic::WGS84().Inverse(from.latitude, from.longitude, to.latitude, to.longitude, metres);
     return Metres(metres);
+}
+
+glm::dvec2 geodesicOffset(LonLat from, LonLat to) {
+    checkPlace(from);
+    checkPlace(to);
+    double metres = 0, azimuth = 0, azimuthThere = 0;
+    GeographicLib::Geodesic::WGS84().Inverse(from.latitude, from.longitude, to.latitude, to.longitude, metres, azimuth,
+                                             azimuthThere);
+    const double angle = radiansFromDegrees(azimuth).value();
+    return {metres * std::sin(angle), metres * std::cos(angle)};
+}
+
+CurvatureRadii curvatureRadii(double latitude) {
+    checkPlace({.longitude = 0, .latitude = latitude});
+    const GeographicLib::Ellipsoid& earth = GeographicLib::Ellipsoid::WGS84();
+    return {.meridian = Metres(earth.MeridionalCurvatureRadius(latitude)),
+            .primeVertical = Metres(earth.TransverseCurvatureRadius(latitude))};
 }
 
 int metricEpsg(LonLat place) {

@@ -92,6 +92,22 @@ Result<Radians> Projection::gridHeadingOfNorth(glm::dvec2 plane) const {
     return Radians(std::atan2(north.x, north.y));
 }
 
+Result<glm::dmat2> Projection::groundFromPlane(glm::dvec2 plane) const {
+    constexpr double kHalf = 10;  // metres
+    const auto here = lonLat(plane);
+    if (!here.ok()) return here.failure();
+    glm::dmat2 ground;
+    for (int axis = 0; axis < 2; ++axis) {
+        const glm::dvec2 step = axis == 0 ? glm::dvec2(kHalf, 0) : glm::dvec2(0, kHalf);
+        const auto before = lonLat(plane - step);
+        const auto after = lonLat(plane + step);
+        if (!before.ok()) return before.failure();
+        if (!after.ok()) return after.failure();
+        ground[axis] = (geodesicOffset(*here, *after) - geodesicOffset(*here, *before)) / (2 * kHalf);
+    }
+    return ground;
+}
+
 #else
 
 struct Projection::State {};
@@ -112,6 +128,9 @@ Result<glm::dvec2> Projection::plane(LonLat) const {
     return kWithoutProj;
 }
 Result<Radians> Projection::gridHeadingOfNorth(glm::dvec2) const {
+    return kWithoutProj;
+}
+Result<glm::dmat2> Projection::groundFromPlane(glm::dvec2) const {
     return kWithoutProj;
 }
 
