@@ -19,9 +19,22 @@ using uvec4 = glm::uvec4;
 #define TERRAY_UNIT_HIT 3      // sampler2D: hit in the tile frame, view depth
 #define TERRAY_UNIT_NODE 4     // usampler2D: node index + 1
 #define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
+#define TERRAY_IMAGE_HIT 1     // image2D rgba32f, compute launch
+#define TERRAY_IMAGE_NODE 2    // uimage2D r32ui, compute launch
+#define TERRAY_IMAGE_COLOUR 3  // image2D rgba8 (sRGB bytes) or rgba16f (linear), compute launch
+#define TERRAY_IMAGE_NORMAL 4  // image2D rgba32f, compute launch
 #define TERRAY_BUFFER_NODES 0  // SSBO: NodeParameters[]
 #define TERRAY_BUFFER_FRAME 1  // UBO: FrameParameters
-#define TERRAY_UNIFORM_NODE 0  // location of the node index
+#define TERRAY_BUFFER_BOXES 2  // SSBO: vec4[], of each node the pixels that its box covers; compute launch
+#define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
+
+// Pixels along the side of a work group of the compute launch, and nodes that it bins at a time.
+#define TERRAY_GROUP_SIDE 8
+#define TERRAY_BIN_NODES 2048
+
+// NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear.
+#define TERRAY_START_LEVEL_MASK 0xffu
+#define TERRAY_BILINEAR_BIT 0x100u
 
 // A slot that is none: NodeParameters::source.y of a node without photo.
 #define TERRAY_NO_SLOT 0xffffffffu
@@ -37,7 +50,7 @@ struct NodeParameters {
     vec4 boxMax;
     vec4 photo;  // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
     uvec4
-        source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: pyramid level to start at
+        source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: start level, surface
 };
 
 // One frame.
@@ -48,11 +61,12 @@ struct FrameParameters {
     vec4 sun;      // xyz: towards the sun, unit, world
     vec4 viewScale;  // x: 1 / length of right, y: 1 / length of up, squared; z: most probes of a photo sample
     vec4 ground;     // rgb: linear colour of ground without photo
+    vec4 bend;       // curved earth: height gained per squared metre, xyz: east east, east north, north north
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(NodeParameters) == 8 * 16);
-static_assert(sizeof(FrameParameters) == 6 * 16);
+static_assert(sizeof(FrameParameters) == 7 * 16);
 }  // namespace terray::interop
 #endif
 

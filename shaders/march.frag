@@ -25,7 +25,7 @@ void main() {
     if (march.exhausted) imageAtomicOr(stepImage, ivec2(gl_FragCoord.xy), 0x80000000u);
 #endif
     if (!march.hit) discard;
-    outHit = vec4(node.eye.xyz + march.t * direction, march.t);
+    outHit = vec4(rayPoint(node, direction, march.t), march.t);
     outNode = nodeIndex + 1u;
     gl_FragDepth = min(frame.forward.w / march.t, 1.0);
 }

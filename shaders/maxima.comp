@@ -1,7 +1,10 @@
 // Maximum mipmap of one height tile (paper 001, section 3.2): up to five levels from the one below, in one dispatch.
 // A thread reduces 4 x 4 source texels by itself (levels 1 and 2 above the source), its 8 x 8 group the rest through
 // shared memory (levels 3, 4, 5). From the codes' 512 x 512 core, 16 x 16 groups build levels 1..5; one more group
-// builds 6..9 from level 5. TERRAY_TILE_CORE and TERRAY_HEIGHT_APRON come from common/tiling.h.
+// builds 6..9 from level 5.
+// A block's maximum includes the ring of samples around it: the bilinear surface over a block interpolates between them
+// (paper 000, section 3.7), so one pyramid bounds columns and patches. Level 1 takes the ring in; the levels above, being
+// maxima of it, then have it too. TERRAY_TILE_CORE and TERRAY_HEIGHT_APRON come from common/tiling.h.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform usampler2DArray heightCodes;
@@ -25,8 +28,26 @@ const int kApron = TERRAY_HEIGHT_APRON;
 uint sourceMaximum(ivec2 texel) {
     int side = kCore >> sourceLevel;
     if (texel.x >= side || texel.y >= side) return 0u;
-    int shift = sourceLevel == 0 ? kApron : 0;
-    return texelFetch(heightCodes, ivec3(texel + shift, slot), sourceLevel).r;
+    return texelFetch(heightCodes, ivec3(texel, slot), sourceLevel).r;
+}
+
+// Greatest of four samples in a row of the core or its ring, from the given one on.
+uint rowMaximum(ivec2 first) {
+    uint greatest = 0u;
+    for (int x = 0; x < 4; ++x)
+        greatest = max(greatest, texelFetch(heightCodes, ivec3(first + ivec2(x, 0) + kApron, slot), 0).r);
+    return greatest;
+}
+
+// Maximum of a 2 x 2 quad of source texels; of samples, with the ring around them.
+uint quadMaximum(ivec2 quad) {
+    ivec2 corner = 2 * quad;
+    if (sourceLevel == 0) {
+        return max(max(rowMaximum(corner + ivec2(-1, -1)), rowMaximum(corner + ivec2(-1, 0))),
+                   max(rowMaximum(corner + ivec2(-1, 1)), rowMaximum(corner + ivec2(-1, 2))));
+    }
+    return max(max(sourceMaximum(corner), sourceMaximum(corner + ivec2(1, 0))),
+               max(sourceMaximum(corner + ivec2(0, 1)), sourceMaximum(corner + ivec2(1, 1))));
 }
 
 // Whether a texel exists `levels` above the source.
@@ -50,8 +71,7 @@ void main() {
     for (int y = 0; y < 2; ++y) {
         for (int x = 0; x < 2; ++x) {
             ivec2 quad = 2 * texel + ivec2(x, y);
-            uint quadGreatest = max(max(sourceMaximum(2 * quad), sourceMaximum(2 * quad + ivec2(1, 0))),
-                                    max(sourceMaximum(2 * quad + ivec2(0, 1)), sourceMaximum(2 * quad + ivec2(1, 1))));
+            uint quadGreatest = quadMaximum(quad);
             if (inside(quad, 1)) imageStore(above1, ivec3(quad, slot), uvec4(quadGreatest));
             greatest = max(greatest, quadGreatest);
         }

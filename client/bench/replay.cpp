@@ -104,8 +104,18 @@ class Replay {
 
     FrameTable& table() { return table_; }
 
+    /// The launch in use and, where it was chosen by calibration, by how much.
+    [[nodiscard]] Json launch() const {
+        const auto& calibration = engine_.calibration();
+        if (!calibration) return Json::Object{{"chosen", options_.engine.toJson().stringAt("launch").value()}};
+        return Json::Object{{"chosen", std::string(name(calibration->chosen))},
+                            {"rasterMs", calibration->rasterMs},
+                            {"computeMs", calibration->computeMs}};
+    }
+
     [[nodiscard]] Json summary() const {
         return Json::Object{{"frames", uint64_t{frames_}},
+                            {"launch", launch()},
                             {"wallSeconds", wallSeconds_},
                             {"peakResidentBytes", peakResidentBytes()},
                             {"warmUp", Json::Object{{"frames", options_.warmUpFrames},
@@ -180,6 +190,12 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
     const double frames = replay.summary().numberAt("frames").value();
     std::printf("%.0f frames: median %.1f ms (processor %.1f, graphics %.1f), %.0f nodes\n", frames,
                 table.median("frame_ms"), table.median("cpu_ms"), table.median("gpu_ms"), table.median("nodes"));
+    const Json launch = replay.launch();
+    std::printf("launch: %s", launch.stringAt("chosen").value().c_str());
+    if (launch.find("rasterMs") != nullptr)
+        std::printf(" (calibration: raster %.1f ms, compute %.1f ms a frame)", launch.numberAt("rasterMs").value(),
+                    launch.numberAt("computeMs").value());
+    std::printf("\n");
     if (statistics)
         std::printf("steps a ray: mean %.1f, at most %.0f; rays out of steps: %.0f\n", table.median("steps_mean"),
                     table.max("steps_max"), table.sum("rays_out_of_steps"));

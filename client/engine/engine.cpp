@@ -171,6 +171,7 @@ void Engine::State::render() {
 
 void Engine::State::fillReport() {
     report.nodes = selection.nodes.size();
+    report.bilinearNodes = renderer.bilinearNodes();
     for (const DrawNode& node : selection.nodes)
         if (!node.heightsExact || !node.imageryExact) ++report.standIns;
     report.wanted = selection.wanted.size();
@@ -222,6 +223,10 @@ const View& Engine::view() const {
 
 const GpuTiles& Engine::tiles() const {
     return state_->resident.gpu();
+}
+
+const std::optional<TerrainRenderer::Calibration>& Engine::calibration() const {
+    return state_->renderer.calibration();
 }
 
 glm::dvec3 Engine::worldFromHit(const DrawNode& node, const glm::vec4& hit) const {

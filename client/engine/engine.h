@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct FrameReport {
     double frameMs = 0;  ///< drawFrame() from start to end less waitMs; it ends when the GPU has finished
     std::array<double, kGpuPasses> gpuMs{};
     size_t nodes = 0;
+    size_t bilinearNodes = 0;
     size_t standIns = 0;  ///< nodes drawn from an ancestor of what was wanted
     size_t wanted = 0;    ///< tiles that the frame still lacked, failed ones among them
     size_t uploadedTiles = 0;
@@ -73,6 +75,8 @@ class Engine {
     [[nodiscard]] const std::vector<DrawNode>& nodes() const;
     [[nodiscard]] const View& view() const;
     [[nodiscard]] const GpuTiles& tiles() const;
+    /// How the launch was chosen; none unless Launch::automatic has drawn a frame.
+    [[nodiscard]] const std::optional<TerrainRenderer::Calibration>& calibration() const;
 
     /// World position of a hit: tile frame of the node to world, in double.
     [[nodiscard]] glm::dvec3 worldFromHit(const DrawNode& node, const glm::vec4& hit) const;

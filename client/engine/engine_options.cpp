@@ -66,6 +66,20 @@ PhotoFilter photoFilter(const std::string& name) {
     refuse("--photo-filter", name, "auto, hardware or probes");
 }
 
+Launch launchNamed(const std::string& name) {
+    if (name == "auto") return Launch::automatic;
+    if (name == "raster") return Launch::raster;
+    if (name == "compute") return Launch::compute;
+    refuse("--launch", name, "auto, raster or compute");
+}
+
+Surface surfaceNamed(const std::string& name) {
+    if (name == "auto") return Surface::automatic;
+    if (name == "columns") return Surface::columns;
+    if (name == "bilinear") return Surface::bilinear;
+    refuse("--surface", name, "auto, columns or bilinear");
+}
+
 void EngineCommandLine::declare(CommandLine& line) {
     sun_ = degreesOf(RenderOptions().sunDirection);
     line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
@@ -80,7 +94,11 @@ void EngineCommandLine::declare(CommandLine& line) {
                "for tiles on the GPU, half to heights and half to the photo; all to heights without a photo (512M)");
     line.bytes("--upload-budget", uploadBudget_, "of one frame, at least one tile; not while waiting for tiles (16M)");
     line.option("--decode-threads", decodeThreads_, "N", "0: one less than the machine's cores (0)");
-    line.option("--occlusion", occlusion_, "on|off", "the tile-ID pass ahead of the march (on)");
+    line.option("--launch", launch_, "auto|raster|compute",
+                "rays from rasterised boxes or from dispatches alone; auto times both at the start (auto)");
+    line.option("--occlusion", occlusion_, "on|off", "raster launch: the tile-ID pass ahead of the march (on)");
+    line.option("--surface", surface_, "auto|columns|bilinear",
+                "between samples; auto: bilinear where a sample is larger than a pixel, else columns (auto)");
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
 }
@@ -101,7 +119,9 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.render.sunDirection = sunDirection(sun_);
     options.render.anisotropy = static_cast<float>(anisotropy_);
     options.render.photoFilter = photoFilter(photoFilter_);
+    options.render.launch = launchNamed(launch_);
     options.render.occlusion = occlusion_ == "on";
+    options.render.surface = surfaceNamed(surface_);
     options.pager.hostBudgetBytes = hostMemory_;
     options.pager.decodeThreads = static_cast<int>(decodeThreads_);
     options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;
@@ -112,12 +132,20 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
 }
 
 Json EngineCommandLine::toJson() const {
-    return Json::Object{{"tolerance", tolerance_},        {"imagery-tolerance", imageryTolerance_},
-                        {"no-imagery", noImagery_},       {"sun", sun_},
-                        {"anisotropy", anisotropy_},      {"photo-filter", photoFilter_},
-                        {"host-memory", hostMemory_},     {"gpu-memory", gpuMemory_},
-                        {"upload-budget", uploadBudget_}, {"decode-threads", decodeThreads_},
-                        {"occlusion", occlusion_},        {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
+    return Json::Object{{"tolerance", tolerance_},
+                        {"imagery-tolerance", imageryTolerance_},
+                        {"no-imagery", noImagery_},
+                        {"sun", sun_},
+                        {"anisotropy", anisotropy_},
+                        {"photo-filter", photoFilter_},
+                        {"host-memory", hostMemory_},
+                        {"gpu-memory", gpuMemory_},
+                        {"upload-budget", uploadBudget_},
+                        {"decode-threads", decodeThreads_},
+                        {"launch", launch_},
+                        {"occlusion", occlusion_},
+                        {"surface", surface_},
+                        {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};
 }
 

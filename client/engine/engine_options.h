@@ -37,7 +37,9 @@ class EngineCommandLine {
     uint64_t gpuMemory_ = EngineOptions().gpuHeightBytes + EngineOptions().gpuImageryBytes;
     uint64_t uploadBudget_ = EngineOptions().uploadBytesPerFrame;
     int64_t decodeThreads_ = 0;
+    std::string launch_ = "auto";
     std::string occlusion_ = "on";
+    std::string surface_ = "auto";
     std::string shaders_;
     bool signalSky_ = false;
 };
@@ -48,5 +50,11 @@ class EngineCommandLine {
 
 /// The filter that "auto", "hardware" or "probes" names. Throws Error(usage) on anything else.
 [[nodiscard]] PhotoFilter photoFilter(const std::string& name);
+
+/// The launch that "auto", "raster" or "compute" names. Throws Error(usage) on anything else.
+[[nodiscard]] Launch launchNamed(const std::string& name);
+
+/// The surface that "auto", "columns" or "bilinear" names. Throws Error(usage) on anything else.
+[[nodiscard]] Surface surfaceNamed(const std::string& name);
 
 }  // namespace terray

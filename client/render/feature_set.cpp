@@ -2,13 +2,26 @@
 
 namespace terray {
 
+FeatureSet FeatureSet::marching() const {
+    return {.statistics = statistics, .occlusion = occlusion, .bilinear = bilinear, .curved = curved};
+}
+
+FeatureSet FeatureSet::resolving() const {
+    return {.imagery = imagery,
+            .normals = normals,
+            .signalSky = signalSky,
+            .linearColour = linearColour,
+            .photoProbes = imagery && photoProbes};
+}
+
 ShaderDefines FeatureSet::defines() const {
     const auto digit = [](bool on) { return on ? "1" : "0"; };
     return {
-        {"TERRAY_IMAGERY", digit(imagery)},
-        {"TERRAY_STATISTICS", digit(statistics)},
-        {"TERRAY_NORMALS", digit(normals)},
-        {"TERRAY_SIGNAL_SKY", digit(signalSky)},
+        {"TERRAY_IMAGERY", digit(imagery)},           {"TERRAY_STATISTICS", digit(statistics)},
+        {"TERRAY_NORMALS", digit(normals)},           {"TERRAY_SIGNAL_SKY", digit(signalSky)},
+        {"TERRAY_OCCLUSION", digit(occlusion)},       {"TERRAY_PHOTO_PROBES", digit(photoProbes)},
+        {"TERRAY_BILINEAR", digit(bilinear)},         {"TERRAY_CURVED", digit(curved)},
+        {"TERRAY_SRGB_COLOUR", digit(!linearColour)},
     };
 }
 

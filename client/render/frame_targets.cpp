@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/check.h"
@@ -63,20 +64,35 @@ FrameTargets::FrameTargets(int width, int height, const FeatureSet& features, Co
     : width_(width), height_(height), features_(features), format_(format) {
     TERRAY_CHECK_OP(width, >, 0);
     TERRAY_CHECK_OP(height, >, 0);
+    features_.linearColour = format == ColourFormat::linearFloat;
     const auto target = [&](GLenum textureFormat, uint64_t texelBytes) {
         bytes_ += static_cast<uint64_t>(GridSize{width, height}.count()) * texelBytes;
         return makeTarget(textureFormat, width, height);
     };
-    id = target(GL_R32UI, 4);
     hit = target(GL_RGBA32F, 16);
     node = target(GL_R32UI, 4);
-    depth = target(GL_DEPTH_COMPONENT32F, 4);
-    colour = format == ColourFormat::srgb8 ? target(GL_SRGB8_ALPHA8, 4) : target(GL_RGBA16F, 8);
+    colour = format == ColourFormat::srgb8 ? target(GL_RGBA8, 4) : target(GL_RGBA16F, 8);
     if (features.statistics) steps = target(GL_R32UI, 4);
     if (features.normals) normal = target(GL_RGBA32F, 16);
-    idFramebuffer = makeTargetFramebuffer("tile-id", {id.name()}, depth.name());
-    marchFramebuffer = makeTargetFramebuffer("ray-cast", {hit.name(), node.name()}, depth.name());
-    resolveFramebuffer = makeTargetFramebuffer("resolve", {colour.name(), normal.name()}, 0);
+}
+
+const RasterTargets& FrameTargets::raster(bool occlusion) {
+    if (raster_ && static_cast<bool>(raster_->id) == occlusion) return *raster_;
+    raster_.reset();
+    RasterTargets made;
+    const auto target = [&](GLenum textureFormat) {
+        made.bytes += static_cast<uint64_t>(GridSize{width_, height_}.count()) * 4;
+        return makeTarget(textureFormat, width_, height_);
+    };
+    made.depth = target(GL_DEPTH_COMPONENT32F);
+    if (occlusion) {
+        made.id = target(GL_R32UI);
+        made.idFramebuffer = makeTargetFramebuffer("tile-id", {made.id.name()}, made.depth.name());
+    }
+    made.marchFramebuffer = makeTargetFramebuffer("ray-cast", {hit.name(), node.name()}, made.depth.name());
+    made.resolveFramebuffer = makeTargetFramebuffer("resolve", {colour.name(), normal.name()}, 0);
+    raster_ = std::make_unique<RasterTargets>(std::move(made));
+    return *raster_;
 }
 
 Grid<std::array<uint8_t, 4>> FrameTargets::readSrgb() const {

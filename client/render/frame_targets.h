@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -12,9 +13,19 @@
 
 namespace terray {
 
+/// What only the raster launch draws into.
+struct RasterTargets {
+    GlTexture id;  ///< R32UI; none without the ID pass
+    GlTexture depth;
+    GlFramebuffer idFramebuffer;       ///< {id | depth}
+    GlFramebuffer marchFramebuffer;    ///< {hit, node | depth}
+    GlFramebuffer resolveFramebuffer;  ///< {colour, normal}
+    uint64_t bytes = 0;
+};
+
 /// How colours leave the resolve pass.
 enum class ColourFormat : uint8_t {
-    srgb8,        ///< 8-bit sRGB, for PNG and the screen
+    srgb8,        ///< 8-bit sRGB, for PNG and the screen: GL_RGBA8 whose bytes the resolve pass has encoded
     linearFloat,  ///< linear half floats, for EXR
 };
 
@@ -33,8 +44,9 @@ class FrameTargets {
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
+    /// As given; linearColour follows the format.
     [[nodiscard]] const FeatureSet& features() const { return features_; }
-    [[nodiscard]] uint64_t bytes() const { return bytes_; }
+    [[nodiscard]] uint64_t bytes() const { return bytes_ + (raster_ ? raster_->bytes : 0); }
 
     /// sRGB bytes, alpha 255; needs ColourFormat::srgb8.
     [[nodiscard]] Grid<std::array<uint8_t, 4>> readSrgb() const;
@@ -50,16 +62,18 @@ class FrameTargets {
     [[nodiscard]] Grid<glm::vec3> readNormals() const;
 
     // For the renderer. Textures of features that are off have no name.
-    GlTexture id, hit, node, depth, steps, normal, colour;
-    GlFramebuffer idFramebuffer, marchFramebuffer,
-        resolveFramebuffer;  ///< {id | depth}, {hit, node | depth}, {colour, normal}
+    GlTexture hit, node, steps, normal, colour;
+    /// Made on first use, and again when `occlusion` changes; kept until dropRaster().
+    const RasterTargets& raster(bool occlusion);
+    void dropRaster() { raster_.reset(); }
 
   private:
     int width_;
     int height_;
     FeatureSet features_;
     ColourFormat format_;
-    uint64_t bytes_ = 0;
+    uint64_t bytes_ = 0;  ///< of what does not depend on the launch
+    std::unique_ptr<RasterTargets> raster_;
 };
 
 }  // namespace terray

@@ -126,7 +126,8 @@ GpuTiles::Upload GpuTiles::uploadHeights(const HeightTile& tile) {
     const std::optional<SlotTable::Place> place = heightSlots_.place(tile.id);
     if (!place) return {};
     if (place->evicted) residentHeights_.erase(*place->evicted);
-    residentHeights_[tile.id] = {.slot = place->slot, .encoding = tile.encoding, .record = tile.record};
+    residentHeights_[tile.id] = {
+        .slot = place->slot, .encoding = tile.encoding, .record = tile.record, .maxima = CodeMaxima(tile.codes.view())};
     glPixelStorei(GL_UNPACK_ALIGNMENT, alignof(uint16_t));
     glTextureSubImage3D(heightTexture_.name(), 0, 0, 0, static_cast<GLint>(place->slot), kHeightTileSide,
                         kHeightTileSide, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, tile.codes.cells().data());

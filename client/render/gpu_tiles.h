@@ -4,6 +4,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "client/render/code_maxima.h"
 #include "client/render/gl_objects.h"
 #include "client/render/shader_library.h"
 #include "client/render/slot_table.h"
@@ -36,14 +37,16 @@ struct ResidentHeights {
     uint32_t slot = 0;  ///< layer of the array
     HeightEncoding encoding;
     HeightRecord record;
+    CodeMaxima maxima;
 };
 
 /// The tiles that live on the GPU, in slots of two texture arrays, least recently used first out.
 ///
 /// Heights: R16UI, 516 x 516, 10 levels. Level 0 holds the codes with their apron. Level l = 1..9 holds in its texels
-/// [0, 512 >> l)^2 the maximum of the 2^l x 2^l core codes beneath (0 where there is no surface), built by compute
-/// shader on arrival: the maximum mipmap of paper 001, section 3.2, in one texture, since mip sizes 258, 129, 64 ... 1
-/// of the apron texture are large enough for it.
+/// [0, 512 >> l)^2 the maximum of the 2^l x 2^l core codes beneath and of the ring of codes around them (0 where there
+/// is no surface), built by compute shader on arrival: the maximum mipmap of paper 001, section 3.2, widened so that it
+/// bounds the bilinear surface too, in one texture, since mip sizes 258, 129, 64 ... 1 of the apron texture are large
+/// enough for it.
 /// Imagery: BC1 sRGB, 576 x 576, 4 levels.
 ///
 /// GL thread only. Never more than the budgets, except that there is at least one slot of each kind that is used.

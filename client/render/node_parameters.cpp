@@ -1,8 +1,10 @@
 #include "client/render/node_parameters.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
@@ -27,6 +29,11 @@ SubSquare subSquare(const TileId& cell, const TileId& ancestor) {
     return {{column * side, row * side}, side};
 }
 
+constexpr double kUnbounded = 1e30;
+constexpr float kManyPixels = 1e6F;
+/// View depth in metres at which boxes around the eye are cut off, so that they have a projection.
+constexpr double kNearest = 1e-3;
+
 /// Distance from the eye to the farthest corner of a cell's box, metres.
 double farthestCorner(const DrawNode& node, const Tiling& tiling, const glm::dvec3& eye) {
     const GroundRect ground = tiling.bounds(node.cell);
@@ -38,19 +45,60 @@ double farthestCorner(const DrawNode& node, const Tiling& tiling, const glm::dve
 
 }  // namespace
 
-interop::NodeParameters nodeParameters(const DrawNode& node, const ResidentHeights& heights, uint32_t photoSlot,
-                                       const Tiling& tiling, const View& view) {
+bool magnified(const DrawNode& node, const Tiling& tiling, const View& view) {
+    const GroundRect ground = tiling.bounds(node.cell);
+    const double x = std::max({ground.west - view.eye.x, view.eye.x - ground.east, 0.0});
+    const double y = std::max({ground.south - view.eye.y, view.eye.y - ground.north, 0.0});
+    const double z = std::max({node.minHeight - view.eye.z, view.eye.z - node.maxHeight, 0.0});
+    return tiling.spacing(node.heightTile.level) * view.focalPixels() > std::hypot(x, y, z);
+}
+
+glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
+    const glm::dvec3 scale(node.eye.w, -node.eye.w, node.right.w);  // tile frame to metres east, north, up
+    std::array<glm::dvec3, 8> corners;                              // right, up, depth
+    for (size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 corner((i & 1) != 0 ? node.boxMax.x : node.boxMin.x,
+                                (i & 2) != 0 ? node.boxMax.y : node.boxMin.y,
+                                (i & 4) != 0 ? node.boxMax.z : node.boxMin.z);
+        const glm::dvec3 fromEye = (corner - glm::dvec3(node.eye)) * scale;
+        corners[i] = {glm::dot(fromEye, view.right), glm::dot(fromEye, view.up), glm::dot(fromEye, view.forward)};
+    }
+    glm::dvec2 least(kUnbounded), greatest(-kUnbounded);
+    const auto take = [&](const glm::dvec3& point) {
+        const glm::dvec2 slope(point.x / point.z, point.y / point.z);
+        least = glm::min(least, slope);
+        greatest = glm::max(greatest, slope);
+    };
+    // Corners in front of the eye, and where edges that lead behind it come nearest.
+    for (size_t i = 0; i < corners.size(); ++i) {
+        if (corners[i].z >= kNearest) take(corners[i]);
+        for (const size_t axis : {1, 2, 4}) {
+            const glm::dvec3& a = corners[i];
+            const glm::dvec3& b = corners[i ^ axis];
+            if (a.z < kNearest && b.z > kNearest) take(glm::mix(a, b, (kNearest - a.z) / (b.z - a.z)));
+        }
+    }
+    const glm::dvec2 size(view.width, view.height);
+    const glm::dvec2 half(view.tanHalfWidth(), view.tanHalfHeight);
+    const auto pixels = [&](const glm::dvec2& slope) { return (slope / half + 1.0) * 0.5 * size; };
+    const glm::dvec2 low = pixels(least) - 1.0, high = pixels(greatest) + 1.0;
+    return glm::clamp(glm::vec4(low, high), -kManyPixels, kManyPixels);
+}
+
+interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& source, const Tiling& tiling,
+                                       const View& view) {
     TERRAY_CHECK(node.heightTile.covers(node.cell));
+    const ResidentHeights& heights = source.heights;
     const double spacing = tiling.spacing(node.heightTile.level);
     const double step = heights.encoding.metresPerCode();
-    const GroundRect source = tiling.bounds(node.heightTile);
+    const GroundRect ground = tiling.bounds(node.heightTile);
     const auto codeOf = [&](double height) { return height / step - static_cast<double>(heights.encoding.offset); };
     const auto tileDirection = [&](const glm::dvec3& world) {
         return glm::dvec3(world.x / spacing, -world.y / spacing, world.z / step);
     };
 
     interop::NodeParameters out;
-    const glm::dvec3 eye((view.eye.x - source.west) / spacing, (source.north - view.eye.y) / spacing,
+    const glm::dvec3 eye((view.eye.x - ground.west) / spacing, (ground.north - view.eye.y) / spacing,
                          codeOf(view.eye.z));
     const double marginMetres = farthestCorner(node, tiling, view.eye) / view.focalPixels();
     out.eye = withW(eye, spacing);
@@ -61,9 +109,11 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const ResidentHeigh
     // Half a code above and below, so that rounding the bounds to float cuts off no surface.
     const SubSquare cell = subSquare(node.cell, node.heightTile);
     out.boxMin = withW({cell.corner, codeOf(node.minHeight) - 0.5}, 0);
-    out.boxMax = withW({cell.corner + cell.side, codeOf(node.maxHeight) + 0.5}, 0);
+    const double top =
+        source.bilinear ? heights.maxima.over(cell.corner.x, cell.corner.y, cell.side) : codeOf(node.maxHeight);
+    out.boxMax = withW({cell.corner + cell.side, top + 0.5}, 0);
 
-    if (node.imageryTile && photoSlot != TERRAY_NO_SLOT) {
+    if (node.imageryTile && source.photoSlot != TERRAY_NO_SLOT) {
         // Both tiles contain the cell, so one contains the other: photo texels = offset + scale * height texels.
         const SubSquare inPhoto = subSquare(node.cell, *node.imageryTile);
         const double scale = inPhoto.side / cell.side;
@@ -73,8 +123,10 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const ResidentHeigh
     }
     // Paper 001, section 3.2: start below the single block that holds the cell, for every ray enters at its box.
     const auto below = static_cast<int>(node.cell.level - node.heightTile.level);
-    const auto start = static_cast<uint32_t>(std::max(8 - below, 0));
-    out.source = {heights.slot, node.imageryTile ? photoSlot : TERRAY_NO_SLOT, node.cell.level, start};
+    // Patches are tried from level 1 (shaders/march.glsl).
+    const auto start = static_cast<uint32_t>(std::max(8 - below, source.bilinear ? 1 : 0));
+    out.source = {heights.slot, node.imageryTile ? source.photoSlot : TERRAY_NO_SLOT, node.cell.level,
+                  start | (source.bilinear ? TERRAY_BILINEAR_BIT : 0)};
     return out;
 }
 

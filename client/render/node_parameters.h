@@ -8,14 +8,29 @@
 
 namespace terray {
 
+/// What a node is drawn from.
+struct NodeSource {
+    const ResidentHeights& heights;
+    uint32_t photoSlot = TERRAY_NO_SLOT;  ///< layer of the node's imagery tile
+    bool bilinear = false;                ///< the surface: patches between sample centres, or columns
+};
+
 /// A node as the shaders see it: eye, view axes and box in the tile frame of its height source (see shaders/interop.h).
 ///
 /// All differences are taken in double; what is rounded to float is relative to the tile. A ray's position is then off
 /// by at most a few last places of the eye's distance in texels, 2^-22 of it: far below a pixel, which is about 2^-10
 /// of it.
-/// @param photoSlot  layer of the node's imagery tile, or TERRAY_NO_SLOT
-[[nodiscard]] interop::NodeParameters nodeParameters(const DrawNode& node, const ResidentHeights& heights,
-                                                     uint32_t photoSlot, const Tiling& tiling, const View& view);
+[[nodiscard]] interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& source,
+                                                     const Tiling& tiling, const View& view);
+
+/// Whether a sample of the node's height tile may cover more than a pixel at the node's nearest point: there columns
+/// would show as steps, and the surface is drawn bilinear.
+[[nodiscard]] bool magnified(const DrawNode& node, const Tiling& tiling, const View& view);
+
+/// The pixels that a node's box covers, as least x, least y, greatest x, greatest y, counted like gl_FragCoord (y from
+/// the bottom, centres at + 0.5), widened by one pixel; least > greatest when the box lies behind the eye.
+/// Conservative: every pixel whose ray meets the box lies inside, though most boxes cover only part of it.
+[[nodiscard]] glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view);
 
 /// World position (metres) of a point of a height tile's frame, in double.
 [[nodiscard]] glm::dvec3 worldFromTile(const TileId& heightTile, const HeightEncoding& encoding, const Tiling& tiling,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <regex>
+#include <set>
 
 #include "client/render/embedded_shaders.h"
 #include "common/error.h"
@@ -64,8 +65,8 @@ class Resolver {
     Result<void> addFile(const std::string& name) {
         const Result<std::string> text = source_(name);
         if (!text.ok()) return text.failure();
-        const size_t number = shader.files.size();
-        shader.files.push_back(name);
+        const size_t number = numberOf(name);
+        if (features_ == 0) settled_.insert(name);
         open_.push_back(name);
         Result<void> result;
         forEachLine(text.value(), [&](int line, std::string_view content) {
@@ -73,6 +74,7 @@ class Resolver {
             if (const std::optional<Include> include = parseInclude(content)) {
                 result = addInclude(*include, "shaders/" + name + ":" + std::to_string(line));
             } else {
+                followConditionals(content);
                 addLine(content, {number, line});
             }
         });
@@ -83,13 +85,32 @@ class Resolver {
     ResolvedShader shader;
 
   private:
+    size_t numberOf(const std::string& name) {
+        const auto found = std::ranges::find(shader.files, name);
+        if (found == shader.files.end()) shader.files.push_back(name);
+        return static_cast<size_t>(std::ranges::find(shader.files, name) - shader.files.begin());
+    }
+
+    /// Keeps count of the features' conditionals, #if; #ifndef and #ifdef guard files and are none.
+    void followConditionals(std::string_view line) {
+        const std::string_view directive = trimmed(line);
+        if (directive.starts_with("#if")) {
+            const bool feature = directive.starts_with("#if ");
+            conditionals_.push_back(feature);
+            features_ += feature ? 1 : 0;
+        } else if (directive.starts_with("#endif") && !conditionals_.empty()) {
+            features_ -= conditionals_.back() ? 1 : 0;
+            conditionals_.pop_back();
+        }
+    }
+
     Result<void> addInclude(const Include& include, const std::string& where) {
         if (include.foreign) return {};
         const auto refuse = [&](const std::string& why) {
             return Failure{where + ": cannot include \"" + include.name + "\": " + why};
         };
         if (std::ranges::count(open_, include.name) > 0) return refuse("it includes this file (a cycle)");
-        if (std::ranges::count(shader.files, include.name) > 0) return {};
+        if (settled_.contains(include.name)) return {};
         if (open_.size() > kMaxIncludeDepth) {
             return refuse("more than " + std::to_string(kMaxIncludeDepth) + " files within each other");
         }
@@ -101,7 +122,10 @@ class Resolver {
     }
 
     Source source_;
-    std::vector<std::string> open_;  ///< the files whose includes are being resolved, outermost first
+    std::set<std::string> settled_;   ///< files whose text is there whatever features are on
+    std::vector<bool> conditionals_;  ///< the open ones, outermost first: whether it asks for a feature
+    int features_ = 0;                ///< how many of them do
+    std::vector<std::string> open_;   ///< the files whose includes are being resolved, outermost first
 };
 
 /// A line of a driver's log that speaks of a line of a shader.

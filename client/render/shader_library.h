@@ -30,10 +30,11 @@ struct ResolvedShader {
 /// Shader sources by name relative to shaders/, such as "march.frag". Compiled into the program at build time; a
 /// directory given at run time takes precedence (for work on shaders).
 ///
-/// `#include "math/box.glsl"` is resolved relative to shaders/, each file at most once per shader; a cycle, a missing
+/// `#include "math/box.glsl"` is resolved relative to shaders/, each file once per shader; a cycle, a missing
 /// file and depth over 16 are failures naming the file and line that asked. Written as "shaders/math/box.glsl", as C++
 /// names it, it is the same file; includes in angle brackets are C++'s own and are skipped. Includes are resolved
-/// before the preprocessor runs, so one inside #if counts as done whatever the condition: keep them outside. Compile
+/// before the preprocessor runs, so what was included inside #if does not count as done, and is put in again where the
+/// next file asks for it; guards (#ifndef) keep it from being compiled twice. Compile
 /// errors are reported as "shaders/math/box.glsl:41: <driver's message>" with the offending line below. Building needs
 /// a current context.
 class ShaderLibrary {

@@ -1,7 +1,8 @@
 #include "client/render/terrain_renderer.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <string_view>
 
 #include <glm/geometric.hpp>
 
@@ -12,11 +13,6 @@
 
 namespace terray {
 namespace {
-
-/// The 12 triangles of a box whose corner n lies at x = n & 1, y = n >> 1 & 1, z = n >> 2; counter-clockwise from
-/// outside in the tile frame, hence clockwise on the ground, whose y runs the other way.
-constexpr std::array<uint8_t, 36> kBoxIndices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                                                 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
 
 float linearFromSrgb(uint8_t value) {
     const double c = value / 255.0;
@@ -34,6 +30,7 @@ interop::FrameParameters frameParameters(const View& view, const RenderOptions& 
     out.viewScale = glm::vec4(1 / (wide * wide), 1 / (view.tanHalfHeight * view.tanHalfHeight), options.anisotropy, 0);
     out.ground = glm::vec4(linearFromSrgb(kNeutralGround[0]), linearFromSrgb(kNeutralGround[1]),
                            linearFromSrgb(kNeutralGround[2]), 1);
+    out.bend = pack(options.bend.value_or(glm::dvec3(0)), 0);
     return out;
 }
 
@@ -46,72 +43,64 @@ bool isSoftwareRasteriser() {
 
 }  // namespace
 
-struct TerrainRenderer::Programs {
-    GlProgram id;  ///< none without occlusion
-    GlProgram march;
-    GlProgram resolve;
-};
+std::string_view name(Launch launch) {
+    switch (launch) {
+        case Launch::automatic:
+            return "auto";
+        case Launch::raster:
+            return "raster";
+        case Launch::compute:
+            return "compute";
+    }
+    return "";
+}
 
 TerrainRenderer::TerrainRenderer(const ShaderLibrary& shaders, const Tiling& tiling)
-    : shaders_(shaders),
-      tiling_(tiling),
+    : tiling_(tiling),
       softwareRasteriser_(isSoftwareRasteriser()),
+      rasterLaunch_(shaders),
+      computeLaunch_(shaders),
       nodeBuffer_(makeBuffer()),
       frameBuffer_(makeBuffer()),
-      boxIndices_(makeBuffer()),
-      vertexArray_(makeVertexArray()),
       photoSampler_(makeSampler()) {
-    glNamedBufferStorage(boxIndices_.name(), sizeof(kBoxIndices), kBoxIndices.data(), 0);
     glNamedBufferStorage(frameBuffer_.name(), sizeof(interop::FrameParameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
-    glVertexArrayElementBuffer(vertexArray_.name(), boxIndices_.name());
     glSamplerParameteri(photoSampler_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glSamplerParameteri(photoSampler_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glSamplerParameteri(photoSampler_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glSamplerParameteri(photoSampler_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-TerrainRenderer::~TerrainRenderer() = default;
-
-TerrainRenderer::Programs& TerrainRenderer::programsFor(const Variant& variant) {
-    auto& programs = programs_[variant];
-    if (!programs) {
-        ShaderDefines defines = variant.features.defines();
-        defines["TERRAY_OCCLUSION"] = variant.occlusion ? "1" : "0";
-        defines["TERRAY_PHOTO_PROBES"] = variant.photoProbes ? "1" : "0";
-        programs = std::make_unique<Programs>();
-        if (variant.occlusion) programs->id = shaders_.require({"box.vert", "id.frag"}, defines);
-        programs->march = shaders_.require({"box.vert", "march.frag"}, defines);
-        programs->resolve = shaders_.require({"screen.vert", "resolve.frag"}, defines);
-    }
-    return *programs;
-}
-
-void TerrainRenderer::uploadFrame(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
-                                  const RenderOptions& options) {
-    std::vector<interop::NodeParameters> parameters;
-    parameters.reserve(nodes.size());
+void TerrainRenderer::describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
+                                    Surface surface) {
+    nodes_.clear();
+    bilinearNodes_ = 0;
     for (const DrawNode& node : nodes) {
         const ResidentHeights* heights = tiles.heights(node.heightTile);
         TERRAY_CHECK(heights != nullptr);
-        uint32_t photoSlot = TERRAY_NO_SLOT;
+        NodeSource source{.heights = *heights};
         if (node.imageryTile) {
             const auto slot = tiles.imagerySlot(*node.imageryTile);
             TERRAY_CHECK(slot.has_value());
-            photoSlot = *slot;
+            source.photoSlot = *slot;
         }
-        parameters.push_back(nodeParameters(node, *heights, photoSlot, tiling_, view));
+        source.bilinear =
+            surface == Surface::bilinear || (surface == Surface::automatic && magnified(node, tiling_, view));
+        bilinearNodes_ += source.bilinear ? 1 : 0;
+        nodes_.push_back(nodeParameters(node, source, tiling_, view));
     }
-    if (parameters.size() > nodeCapacity_ || nodeCapacity_ == 0) {
-        nodeCapacity_ = std::max<uint64_t>(2 * parameters.size(), 64);
+}
+
+void TerrainRenderer::uploadFrame(const View& view, const RenderOptions& options) {
+    if (nodes_.size() > nodeCapacity_ || nodeCapacity_ == 0) {
+        nodeCapacity_ = std::max<uint64_t>(2 * nodes_.size(), 64);
         nodeBuffer_ = makeBuffer();
         glNamedBufferStorage(nodeBuffer_.name(),
                              static_cast<GLsizeiptr>(nodeCapacity_ * sizeof(interop::NodeParameters)), nullptr,
                              GL_DYNAMIC_STORAGE_BIT);
     }
-    if (!parameters.empty()) {
+    if (!nodes_.empty()) {
         glNamedBufferSubData(nodeBuffer_.name(), 0,
-                             static_cast<GLsizeiptr>(parameters.size() * sizeof(interop::NodeParameters)),
-                             parameters.data());
+                             static_cast<GLsizeiptr>(nodes_.size() * sizeof(interop::NodeParameters)), nodes_.data());
     }
     const interop::FrameParameters frame = frameParameters(view, options);
     glNamedBufferSubData(frameBuffer_.name(), 0, sizeof(frame), &frame);
@@ -119,41 +108,8 @@ void TerrainRenderer::uploadFrame(const View& view, std::span<const DrawNode> no
     glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_FRAME, frameBuffer_.name());
 }
 
-/// Paper 001, section 3.4: node by node, first an ID pass with the depth test on and depth writes off, then the march
-/// with the test set to pass and writes on. Without the ID pass the depth test itself keeps the nearest hit.
-void TerrainRenderer::castNodes(size_t count, const Programs& programs, const FrameTargets& targets, GpuTimer* timer) {
-    const auto draw = [&](GpuPass pass, const GlProgram& program, const GlFramebuffer& framebuffer, size_t node) {
-        if (timer != nullptr) timer->enter(pass);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
-        glUseProgram(program.name());
-        glUniform1ui(TERRAY_UNIFORM_NODE, static_cast<GLuint>(node));
-        glDrawElements(GL_TRIANGLES, kBoxIndices.size(), GL_UNSIGNED_BYTE, nullptr);
-    };
-    const bool occlusion = static_cast<bool>(programs.id);
-    glEnable(GL_DEPTH_TEST);
-    glEnable(GL_CULL_FACE);
-    glFrontFace(GL_CW);
-    glCullFace(GL_FRONT);
-    for (size_t node = 0; node < count; ++node) {
-        if (occlusion) {
-            glDepthFunc(GL_GREATER);
-            glDepthMask(GL_FALSE);
-            draw(GpuPass::id, programs.id, targets.idFramebuffer, node);
-            glDepthFunc(GL_ALWAYS);
-            glDepthMask(GL_TRUE);
-        } else {
-            glDepthFunc(GL_GREATER);
-        }
-        draw(GpuPass::march, programs.march, targets.marchFramebuffer, node);
-    }
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_DEPTH_TEST);
-}
-
-void TerrainRenderer::resolve(const Programs& programs, const GpuTiles& tiles, float anisotropy,
-                              const FrameTargets& targets) {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.resolveFramebuffer.name());
-    glUseProgram(programs.resolve.name());
+void TerrainRenderer::bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy) {
+    glBindTextureUnit(TERRAY_UNIT_HEIGHTS, tiles.heightTexture());
     glBindTextureUnit(TERRAY_UNIT_HIT, targets.hit.name());
     glBindTextureUnit(TERRAY_UNIT_NODE, targets.node.name());
     if (targets.features().imagery) {
@@ -161,47 +117,70 @@ void TerrainRenderer::resolve(const Programs& programs, const GpuTiles& tiles, f
         glBindTextureUnit(TERRAY_UNIT_PHOTO, tiles.imageryTexture());
         glBindSampler(TERRAY_UNIT_PHOTO, photoSampler_.name());
     }
-    glEnable(GL_FRAMEBUFFER_SRGB);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDisable(GL_FRAMEBUFFER_SRGB);
-    glBindSampler(TERRAY_UNIT_PHOTO, 0);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+}
+
+void TerrainRenderer::draw(const CastFrame& frame, Launch launch) {
+    if (launch == Launch::compute) {
+        computeLaunch_.cast(frame);
+        computeLaunch_.resolve(frame);
+    } else {
+        rasterLaunch_.cast(frame);
+        rasterLaunch_.resolve(frame);
+    }
+}
+
+/// Wall clock around glFinish, which also counts what the driver does on the CPU for hundreds of draws.
+void TerrainRenderer::calibrate(CastFrame frame, bool occlusion) {
+    frame.timer = nullptr;
+    const auto medianMs = [&](Launch launch) {
+        frame.features.occlusion = occlusion && launch == Launch::raster;
+        std::vector<double> times;
+        for (int i = 0; i < kCalibrationFrames; ++i) {
+            glFinish();
+            const auto start = std::chrono::steady_clock::now();
+            draw(frame, launch);
+            glFinish();
+            times.push_back(
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        }
+        times.erase(times.begin());  // it compiled programs
+        std::ranges::sort(times);
+        return times[times.size() / 2];
+    };
+    Calibration result{.rasterMs = medianMs(Launch::raster), .computeMs = medianMs(Launch::compute)};
+    result.chosen = result.computeMs < result.rasterMs ? Launch::compute : Launch::raster;
+    calibration_ = result;
 }
 
 void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
                              const RenderOptions& options, FrameTargets& targets, GpuTimer* timer) {
     TERRAY_CHECK_OP(view.width, ==, targets.width());
     TERRAY_CHECK_OP(view.height, ==, targets.height());
-    const bool probes = targets.features().imagery && options.photoFilter != PhotoFilter::hardware &&
-                        (options.photoFilter == PhotoFilter::probes || softwareRasteriser_);
-    const Programs& programs =
-        programsFor({.features = targets.features(), .occlusion = options.occlusion, .photoProbes = probes});
-    uploadFrame(view, nodes, tiles, options);
+    describeNodes(view, nodes, tiles, options.surface);
+    uploadFrame(view, options);
 
+    FeatureSet features = targets.features();
+    features.photoProbes = features.imagery && options.photoFilter != PhotoFilter::hardware &&
+                           (options.photoFilter == PhotoFilter::probes || softwareRasteriser_);
+    features.bilinear = bilinearNodes_ > 0;
+    features.curved = options.bend.has_value();
     glViewport(0, 0, view.width, view.height);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glDepthMask(GL_TRUE);
-    glBindVertexArray(vertexArray_.name());
-    const GLuint noNode[4] = {0, 0, 0, 0};
-    const float infinitelyFar = 0;
-    glClearNamedFramebufferuiv(targets.idFramebuffer.name(), GL_COLOR, 0, noNode);
-    glClearNamedFramebufferuiv(targets.marchFramebuffer.name(), GL_COLOR, 1, noNode);
-    glClearNamedFramebufferfv(targets.marchFramebuffer.name(), GL_DEPTH, 0, &infinitelyFar);
-    if (targets.features().statistics) {
-        glClearTexImage(targets.steps.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, noNode);
-        glBindImageTexture(TERRAY_IMAGE_STEPS, targets.steps.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-    }
-    glBindTextureUnit(TERRAY_UNIT_HEIGHTS, tiles.heightTexture());
-    glBindTextureUnit(TERRAY_UNIT_ID, targets.id.name());
+    bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 
-    castNodes(nodes.size(), programs, targets, timer);
-    if (timer != nullptr) timer->enter(GpuPass::resolve);
-    resolve(programs, tiles, probes ? 1 : options.anisotropy, targets);
-    if (targets.features().statistics) glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    CastFrame frame{.view = view, .nodes = nodes_, .features = features, .targets = targets, .timer = timer};
+    if (options.launch == Launch::automatic && !calibration_) calibrate(frame, options.occlusion);
+    const Launch launch = options.launch == Launch::automatic ? calibration_->chosen : options.launch;
+    if (launch == Launch::compute) targets.dropRaster();
+    frame.features.occlusion = options.occlusion && launch == Launch::raster;
+    draw(frame, launch);
+
+    glBindSampler(TERRAY_UNIT_PHOTO, 0);
+    if (features.statistics) glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 uint64_t TerrainRenderer::bufferBytes() const {
-    return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) + sizeof(kBoxIndices);
+    return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) +
+           RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes();
 }
 
 }  // namespace terray

@@ -1,19 +1,18 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <map>
-#include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
-#include "client/render/feature_set.h"
-#include "client/render/frame_targets.h"
+#include <glm/vec3.hpp>
+
+#include "client/render/compute_launch.h"
 #include "client/render/gpu_tiles.h"
-#include "client/render/gpu_timer.h"
+#include "client/render/raster_launch.h"
 #include "common/draw_node.h"
 #include "common/tiling.h"
-#include "common/view.h"
 
 namespace terray {
 
@@ -24,7 +23,22 @@ enum class PhotoFilter : uint8_t {
     probes,     ///< the resolve shader, by the same formula
 };
 
-/// Light and filtering of a frame.
+/// How rays get onto the GPU. Both launches draw the same picture.
+enum class Launch : uint8_t {
+    automatic,  ///< whichever is faster in a short calibration on the first frame
+    raster,     ///< boxes rasterised, fragments march (paper 001)
+    compute,    ///< dispatches only; for GPUs whose fragment stage is small
+};
+[[nodiscard]] std::string_view name(Launch launch);
+
+/// What is drawn between samples.
+enum class Surface : uint8_t {
+    automatic,  ///< node by node: bilinear where a sample is larger than a pixel, else columns
+    columns,    ///< piecewise constant (paper 001)
+    bilinear,   ///< patches between sample centres (paper 000, section 3.7)
+};
+
+/// Light, surface and filtering of a frame.
 struct RenderOptions {
     /// Towards the sun, world frame, any length > 0. The default is 40 degrees high in the north-west, as maps are
     /// shaded.
@@ -32,49 +46,62 @@ struct RenderOptions {
     float anisotropy = 16;  ///< 1..16, of photo sampling
     PhotoFilter photoFilter = PhotoFilter::automatic;
     double nearMetres = 0.1;  ///< view depth that depth value 1 stands for; hits nearer count as it
-    bool occlusion = true;    ///< the tile-ID pass (paper 001, section 3.4)
+    Launch launch = Launch::raster;
+    bool occlusion = true;  ///< raster launch: the tile-ID pass (paper 001, section 3.4)
+    Surface surface = Surface::automatic;
+    /// Curved earth: a ray's height over the flat map gains x dx^2 + y dx dy + z dy^2, for dx metres to the east and dy
+    /// to the north of the eye, x, y, z in 1/metre. None: flat.
+    std::optional<glm::dvec3> bend;
 };
 
-/// Draws lists of nodes by ray casting (paper 001, section 3): for each node front to back an ID pass and a march of
-/// the maximum mipmap from the back faces of its box, then one resolve pass over the screen.
+/// Draws lists of nodes by ray casting (paper 001, section 3): a march of each pixel's ray through the nodes, front to
+/// back, by either launch, then one resolve pass over the screen.
 ///
 /// GL thread only. Programs are compiled on first use of a feature set and kept.
 class TerrainRenderer {
   public:
     TerrainRenderer(const ShaderLibrary& shaders, const Tiling& tiling);
-    ~TerrainRenderer();
 
+    /// With Launch::automatic the first frame is also the calibration: it is drawn kCalibrationFrames times by each
+    /// launch.
     /// @param nodes  front to back, every tile resident in `tiles` (misuse otherwise)
     /// @param timer  told which pass runs; may be null
     void render(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles, const RenderOptions& options,
                 FrameTargets& targets, GpuTimer* timer);
 
+    /// What the calibration chose, and in milliseconds why.
+    struct Calibration {
+        Launch chosen = Launch::raster;
+        double rasterMs = 0;
+        double computeMs = 0;
+    };
+    /// None while nothing was drawn with Launch::automatic.
+    [[nodiscard]] const std::optional<Calibration>& calibration() const { return calibration_; }
+    /// Of each launch, the first one untimed.
+    static constexpr int kCalibrationFrames = 4;
+
+    /// Of the last frame.
+    [[nodiscard]] size_t bilinearNodes() const { return bilinearNodes_; }
+
     /// Bytes of the node buffer and the like.
     [[nodiscard]] uint64_t bufferBytes() const;
 
   private:
-    struct Programs;
-    /// What programs are compiled for.
-    struct Variant {
-        FeatureSet features;
-        bool occlusion = true;
-        bool photoProbes = false;
-        auto operator<=>(const Variant&) const = default;
-    };
-    Programs& programsFor(const Variant& variant);
-    void uploadFrame(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
-                     const RenderOptions& options);
-    void castNodes(size_t count, const Programs& programs, const FrameTargets& targets, GpuTimer* timer);
-    void resolve(const Programs& programs, const GpuTiles& tiles, float anisotropy, const FrameTargets& targets);
+    void calibrate(CastFrame frame, bool occlusion);
+    void draw(const CastFrame& frame, Launch launch);
+    void describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles, Surface surface);
+    void uploadFrame(const View& view, const RenderOptions& options);
+    void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
 
-    const ShaderLibrary& shaders_;
     Tiling tiling_;
     bool softwareRasteriser_;
-    std::map<Variant, std::unique_ptr<Programs>> programs_;
+    RasterLaunch rasterLaunch_;
+    ComputeLaunch computeLaunch_;
+    std::optional<Calibration> calibration_;
+    std::vector<interop::NodeParameters> nodes_;  ///< of the last frame
+    size_t bilinearNodes_ = 0;
     GlBuffer nodeBuffer_;
     GlBuffer frameBuffer_;
-    GlBuffer boxIndices_;
-    GlVertexArray vertexArray_;
     GlSampler photoSampler_;
     uint64_t nodeCapacity_ = 0;
 };

@@ -73,6 +73,8 @@ Camera cameraOf(const ViewOptions& options, const DatasetMetadata& metadata) {
 
 EngineOptions engineOptions(const ViewOptions& options, PictureKind kind, const DatasetMetadata& metadata) {
     EngineOptions engine = options.engine.options(metadata.imageryLevel.has_value());
+    // One picture is drawn sooner than a launch is calibrated.
+    if (engine.render.launch == Launch::automatic) engine.render.launch = Launch::raster;
     if (kind == PictureKind::exr) {
         engine.features.statistics = engine.features.normals = true;
         engine.colour = ColourFormat::linearFloat;

@@ -37,7 +37,7 @@ class KnownAnswers : public testing::Test {
 
 TEST_F(KnownAnswers, PlaneIsHitWhereEachRayMeetsIt) {
     const ComputedDataset plane([](int64_t, int64_t) { return 250.0f; }, {1300, 1100}, 2);
-    Engine engine(plane.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    Engine engine(plane.source(), shaders_, inspectedOptions(Surface::columns), kWidth, kHeight);
     const glm::dvec3 eye(2000, 3800, 650);
     const auto report = engine.drawFrame(cameraAt(eye, 30, -35), true);
     EXPECT_EQ(report.wanted, 0u);
@@ -70,7 +70,7 @@ TEST_F(KnownAnswers, PlaneIsHitWhereEachRayMeetsIt) {
 TEST_F(KnownAnswers, StepShowsItsWallAtItsPlace) {
     // 100 m to the west of column 600, 300 m to the east: the wall stands at x = 1000 + 600 * 1 m.
     const ComputedDataset step([](int64_t column, int64_t) { return column < 600 ? 100.0f : 300.0f; }, {1200, 1200}, 1);
-    Engine engine(step.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    Engine engine(step.source(), shaders_, inspectedOptions(Surface::columns), kWidth, kHeight);
     const glm::dvec3 eye(1300, 4400, 200);
     engine.drawFrame(cameraAt(eye, 90, 0), true);
     int wall = 0;
@@ -107,7 +107,7 @@ TEST_F(KnownAnswers, ConeIsHitWithinOneColumnOfItsSlope) {
             400 - kSlope * std::hypot(static_cast<double>(column) - 511.5, static_cast<double>(row) - 511.5));
     };
     const ComputedDataset dataset(cone, {1024, 1024}, 1);
-    EngineOptions options = inspectedOptions();
+    EngineOptions options = inspectedOptions(Surface::columns);
     options.selection.tolerance = Pixels(1e-6);  // always the finest level
     Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
     engine.drawFrame(cameraAt({1512, 3800, 500}, 0, -12), true);
@@ -127,7 +127,7 @@ TEST_F(KnownAnswers, SpikeOfOneSampleStandsWhereItIs) {
     // 2 m of ground, one sample of 500 m: column 700, row 300, so x in [1700, 1701), y in (4699, 4700].
     const ComputedDataset spike([](int64_t column, int64_t row) { return column == 700 && row == 300 ? 500.0f : 2.0f; },
                                 {1500, 700}, 1);
-    EngineOptions options = inspectedOptions();
+    EngineOptions options = inspectedOptions(Surface::columns);
     Engine engine(spike.source(), shaders_, options, kWidth, kHeight);
     const glm::dvec3 eye(1700.5, 4600, 100);
     engine.drawFrame(cameraAt(eye, 0, 0, 10), true);
@@ -150,7 +150,7 @@ TEST_F(KnownAnswers, SpikeOfOneSampleStandsWhereItIs) {
 
 TEST_F(KnownAnswers, OneSampleIsADataset) {
     const ComputedDataset dot([](int64_t, int64_t) { return 7.0f; }, {1, 1}, 10);
-    Engine engine(dot.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    Engine engine(dot.source(), shaders_, inspectedOptions(Surface::columns), kWidth, kHeight);
     engine.drawFrame(cameraAt({1005, 4995, 47}, 0, -90), true);
     int hitCount = 0;
     forEachPixel(engine, [&](int64_t, int64_t, uint32_t node, glm::dvec3 at, double t) {
@@ -169,7 +169,7 @@ TEST_F(KnownAnswers, HolesShowWhatLiesBehindThem) {
             return column >= 200 && column < 300 && row >= 200 && row < 300 ? kNoHeight : 50.0f;
         },
         {512, 512}, 1);
-    EngineOptions options = inspectedOptions();
+    EngineOptions options = inspectedOptions(Surface::columns);
     Engine engine(holed.source(), shaders_, options, kWidth, kHeight);
     engine.drawFrame(cameraAt({1250, 4750, 250}, 0, -90), true);
     const auto nodes = engine.targets().readNodes();

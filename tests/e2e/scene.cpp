@@ -123,8 +123,9 @@ ComputedDataset::~ComputedDataset() {
     std::filesystem::remove_all(parent_, ignored);
 }
 
-EngineOptions inspectedOptions() {
+EngineOptions inspectedOptions(Surface surface) {
     EngineOptions options;
+    options.render.surface = surface;
     options.features.signalSky = true;
     options.features.statistics = true;
     options.features.normals = true;

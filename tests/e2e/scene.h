@@ -46,8 +46,8 @@ class ComputedDataset {
     std::unique_ptr<TileSource> source_;
 };
 
-/// Options for pictures that are looked into: signal sky, steps and normals on.
-[[nodiscard]] EngineOptions inspectedOptions();
+/// Options for pictures that are looked into: signal sky, steps and normals on; raster launch.
+[[nodiscard]] EngineOptions inspectedOptions(Surface surface = Surface::automatic);
 
 /// A camera from degrees.
 [[nodiscard]] Camera cameraAt(glm::dvec3 position, double headingDegrees, double pitchDegrees, double fovDegrees = 45);

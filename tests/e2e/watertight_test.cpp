@@ -134,7 +134,7 @@ TEST_F(Watertight, TwoHundredRandomCamerasUnderAStarvedBudgetShowNoHole) {
     Comparison all;
     // Budgets of 3 to 24 tiles for a view that wants more force stand-ins next to fine tiles: jumps of several levels.
     for (const uint64_t slots : {3, 6, 12, 24}) {
-        EngineOptions options = inspectedOptions();
+        EngineOptions options = inspectedOptions(Surface::columns);
         options.gpuHeightBytes = slots * 720'000;
         Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
         for (int i = 0; i < 50; ++i) {
@@ -165,7 +165,7 @@ TEST_F(Watertight, CliffsAlongTileBordersAreClosed) {
     std::mt19937 random(11);
     Comparison all;
     for (const uint64_t slots : {4, 10, 40}) {
-        EngineOptions options = inspectedOptions();
+        EngineOptions options = inspectedOptions(Surface::columns);
         options.gpuHeightBytes = slots * 720'000;
         Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
         for (int i = 0; i < 20; ++i) {
@@ -180,7 +180,7 @@ TEST_F(Watertight, CliffsAlongTileBordersAreClosed) {
 TEST_F(Watertight, TheComparisonSeesHolesWhenWallsAreCutShort) {
     const ComputedDataset dataset(cliffs, {2048, 2048}, 1);
     ColumnOracle oracle(dataset.source());
-    Engine engine(dataset.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    Engine engine(dataset.source(), shaders_, inspectedOptions(Surface::columns), kWidth, kHeight);
     engine.drawFrame(cameraAt({1250, 4700, 400}, 110, -10, 60), true);
     EXPECT_EQ(compare(engine, oracle).holes, 0);
 
@@ -188,15 +188,15 @@ TEST_F(Watertight, TheComparisonSeesHolesWhenWallsAreCutShort) {
     std::vector<DrawNode> cut = engine.nodes();
     for (DrawNode& node : cut) node.minHeight = std::max(node.minHeight, node.maxHeight - 100);
     TerrainRenderer renderer(shaders_, dataset.source().metadata().tiling);
-    FrameTargets targets(kWidth, kHeight, inspectedOptions().features);
-    renderer.render(engine.view(), cut, engine.tiles(), {}, targets, nullptr);
+    FrameTargets targets(kWidth, kHeight, inspectedOptions(Surface::columns).features);
+    renderer.render(engine.view(), cut, engine.tiles(), {.surface = Surface::columns}, targets, nullptr);
     EXPECT_GT(compare(cut, engine.view(), targets, oracle).holes, 100);
 }
 
 TEST_F(Watertight, StraightDownLowOverARidgeAndAtTheEdge) {
     const ComputedDataset dataset(2048, 10, 5);
     ColumnOracle oracle(dataset.source());
-    Engine engine(dataset.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    Engine engine(dataset.source(), shaders_, inspectedOptions(Surface::columns), kWidth, kHeight);
     const GroundRect ground = dataset.ground();
     const auto above = [&](double x, double y, double clearance) {
         return glm::dvec3(x, y, groundAt(oracle, dataset.source(), x, y) + clearance);
@@ -231,7 +231,7 @@ TEST_F(Watertight, TheStandardTourOverGroundWithoutHolesShowsNone) {
     const ComputedDataset dataset(2048, 10, 9);
     ColumnOracle oracle(dataset.source());
     const Flight tour = standardTour(dataset.source(), 20);
-    Engine engine(dataset.source(), shaders_, inspectedOptions(), kWidth, kHeight);
+    Engine engine(dataset.source(), shaders_, inspectedOptions(Surface::columns), kWidth, kHeight);
     Comparison all;
     for (int frame = 0; frame <= 60; ++frame) {
         engine.drawFrame(tour.at(tour.seconds() * frame / 60), true);

@@ -7,15 +7,26 @@
 namespace terray {
 namespace {
 
+/// The features one by one, with their defines. TERRAY_SRGB_COLOUR says the opposite of its feature.
+struct Named {
+    bool FeatureSet::*feature;
+    const char* define;
+};
+constexpr Named kFeatures[] = {
+    {&FeatureSet::imagery, "TERRAY_IMAGERY"},          {&FeatureSet::statistics, "TERRAY_STATISTICS"},
+    {&FeatureSet::normals, "TERRAY_NORMALS"},          {&FeatureSet::signalSky, "TERRAY_SIGNAL_SKY"},
+    {&FeatureSet::occlusion, "TERRAY_OCCLUSION"},      {&FeatureSet::photoProbes, "TERRAY_PHOTO_PROBES"},
+    {&FeatureSet::bilinear, "TERRAY_BILINEAR"},        {&FeatureSet::curved, "TERRAY_CURVED"},
+    {&FeatureSet::linearColour, "TERRAY_SRGB_COLOUR"},
+};
+static_assert(std::size(kFeatures) == sizeof(FeatureSet), "a new feature joins these tests");
+
 /// Every combination of features.
 std::vector<FeatureSet> allFeatureSets() {
-    static_assert(sizeof(FeatureSet) == 4, "a new feature joins these tests");
     std::vector<FeatureSet> sets;
-    for (unsigned bits = 0; bits < 16; ++bits) {
-        sets.push_back({.imagery = (bits & 1) != 0,
-                        .statistics = (bits & 2) != 0,
-                        .normals = (bits & 4) != 0,
-                        .signalSky = (bits & 8) != 0});
+    for (unsigned bits = 0; bits < 1u << std::size(kFeatures); ++bits) {
+        FeatureSet& features = sets.emplace_back();
+        for (size_t i = 0; i < std::size(kFeatures); ++i) features.*kFeatures[i].feature = (bits >> i & 1) != 0;
     }
     return sets;
 }
@@ -34,11 +45,22 @@ TEST(FeatureSet, DefinesEveryFeatureAsZeroOrOne) {
 TEST(FeatureSet, EachDefineSaysItsOwnFeature) {
     for (const FeatureSet& features : allFeatureSets()) {
         const ShaderDefines defines = features.defines();
-        EXPECT_EQ(defines.at("TERRAY_IMAGERY") == "1", features.imagery);
-        EXPECT_EQ(defines.at("TERRAY_STATISTICS") == "1", features.statistics);
-        EXPECT_EQ(defines.at("TERRAY_NORMALS") == "1", features.normals);
-        EXPECT_EQ(defines.at("TERRAY_SIGNAL_SKY") == "1", features.signalSky);
+        for (const auto& [feature, define] : kFeatures) {
+            const bool on = features.*feature != (feature == &FeatureSet::linearColour);
+            ASSERT_EQ(defines.at(define), on ? "1" : "0") << define;
+        }
     }
+}
+
+TEST(FeatureSet, MarchAndResolveIgnoreWhatTheyDoNotUse) {
+    FeatureSet lookOnly;
+    lookOnly.imagery = lookOnly.normals = lookOnly.signalSky = lookOnly.photoProbes = lookOnly.linearColour = true;
+    EXPECT_EQ(lookOnly.marching(), FeatureSet());
+    FeatureSet marchOnly;
+    marchOnly.statistics = marchOnly.occlusion = marchOnly.bilinear = true;
+    EXPECT_EQ(marchOnly.resolving(), FeatureSet());
+    const FeatureSet probesForNothing{.photoProbes = true};
+    EXPECT_EQ(probesForNothing.resolving(), FeatureSet());
 }
 
 }  // namespace

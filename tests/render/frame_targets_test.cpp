@@ -72,54 +72,56 @@ TEST_F(FrameTargetsTest, HitsNodesStepsAndNormalsAreReadTopRowFirst) {
 }
 
 TEST_F(FrameTargetsTest, FramebuffersDrawIntoTheirTextures) {
-    const FrameTargets targets(kWidth, kHeight, kAllFeatures);
+    FrameTargets targets(kWidth, kHeight, kAllFeatures);
+    const RasterTargets& raster = targets.raster(true);
     const std::array<GLuint, 4> id = {7, 0, 0, 0};
     const std::array<GLuint, 4> node = {8, 0, 0, 0};
     const std::array<GLfloat, 4> hit = {1, 2, 3, 4};
     const std::array<GLfloat, 4> colour = {1, 0, 0, 1};
     const std::array<GLfloat, 4> normal = {0, 0, 1, 0};
     const GLfloat depth = 0.5F;
-    glClearNamedFramebufferuiv(targets.idFramebuffer.name(), GL_COLOR, 0, id.data());
-    glClearNamedFramebufferfv(targets.marchFramebuffer.name(), GL_COLOR, 0, hit.data());
-    glClearNamedFramebufferuiv(targets.marchFramebuffer.name(), GL_COLOR, 1, node.data());
-    glClearNamedFramebufferfv(targets.marchFramebuffer.name(), GL_DEPTH, 0, &depth);
-    glClearNamedFramebufferfv(targets.resolveFramebuffer.name(), GL_COLOR, 0, colour.data());
-    glClearNamedFramebufferfv(targets.resolveFramebuffer.name(), GL_COLOR, 1, normal.data());
+    glClearNamedFramebufferuiv(raster.idFramebuffer.name(), GL_COLOR, 0, id.data());
+    glClearNamedFramebufferfv(raster.marchFramebuffer.name(), GL_COLOR, 0, hit.data());
+    glClearNamedFramebufferuiv(raster.marchFramebuffer.name(), GL_COLOR, 1, node.data());
+    glClearNamedFramebufferfv(raster.marchFramebuffer.name(), GL_DEPTH, 0, &depth);
+    glClearNamedFramebufferfv(raster.resolveFramebuffer.name(), GL_COLOR, 0, colour.data());
+    glClearNamedFramebufferfv(raster.resolveFramebuffer.name(), GL_COLOR, 1, normal.data());
     uint32_t readId = 0;
-    glGetTextureSubImage(targets.id.name(), 0, 3, 3, 0, 1, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &readId);
+    glGetTextureSubImage(raster.id.name(), 0, 3, 3, 0, 1, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &readId);
     float readDepth = 0;  // written by the march's framebuffer, tested by the ID pass's
-    glGetTextureSubImage(targets.depth.name(), 0, 3, 3, 0, 1, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, 4, &readDepth);
+    glGetTextureSubImage(raster.depth.name(), 0, 3, 3, 0, 1, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, 4, &readDepth);
     GLint idPassDepth = 0;
-    glGetNamedFramebufferAttachmentParameteriv(targets.idFramebuffer.name(), GL_DEPTH_ATTACHMENT,
+    glGetNamedFramebufferAttachmentParameteriv(raster.idFramebuffer.name(), GL_DEPTH_ATTACHMENT,
                                                GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &idPassDepth);
     EXPECT_EQ(readId, 7u);
     EXPECT_EQ(readDepth, depth);
-    EXPECT_EQ(static_cast<GLuint>(idPassDepth), targets.depth.name());
+    EXPECT_EQ(static_cast<GLuint>(idPassDepth), raster.depth.name());
     EXPECT_EQ(targets.readHits().at(3, 3), glm::vec4(1, 2, 3, 4));
     EXPECT_EQ(targets.readNodes().at(3, 3), 8u);
     EXPECT_EQ(targets.readSrgb().at(3, 3), (std::array<uint8_t, 4>{255, 0, 0, 255}));
     EXPECT_EQ(targets.readNormals().at(3, 3), glm::vec3(0, 0, 1));
 }
 
-TEST_F(FrameTargetsTest, LinearColoursBecomeSrgbWhenDrawn) {
-    const FrameTargets targets(kWidth, kHeight, {});
-    glEnable(GL_FRAMEBUFFER_SRGB);
-    const std::array<GLfloat, 4> colour = {0.5F, 0.0F, 1.0F, 0.25F};
-    glClearNamedFramebufferfv(targets.resolveFramebuffer.name(), GL_COLOR, 0, colour.data());
-    // 188 = 255 (1.055 0.5^(1/2.4) - 0.055)
-    EXPECT_EQ(targets.readSrgb().at(0, 0), (std::array<uint8_t, 4>{188, 0, 255, 255}));
-}
-
 TEST_F(FrameTargetsTest, WhatIsOffIsNotAllocated) {
-    const FrameTargets plain(kWidth, kHeight, {});
+    FrameTargets plain(kWidth, kHeight, {});
     EXPECT_FALSE(plain.steps);
     EXPECT_FALSE(plain.normal);
     const FrameTargets all(kWidth, kHeight, kAllFeatures);
     EXPECT_TRUE(all.steps);
     EXPECT_TRUE(all.normal);
-    // id 4, hit 16, node 4, depth 4, colour 4 bytes a pixel; steps 4 and normals 16 more
-    EXPECT_EQ(plain.bytes(), uint64_t{kWidth * kHeight * 32});
-    EXPECT_EQ(all.bytes(), uint64_t{kWidth * kHeight * 52});
+    // hit 16, node 4, colour 4 bytes a pixel; steps 4 and normals 16 more
+    EXPECT_EQ(plain.bytes(), uint64_t{kWidth * kHeight * 24});
+    EXPECT_EQ(all.bytes(), uint64_t{kWidth * kHeight * 44});
+}
+
+TEST_F(FrameTargetsTest, DepthAndIdsExistForTheRasterLaunchAlone) {
+    FrameTargets targets(kWidth, kHeight, {});
+    EXPECT_TRUE(targets.raster(true).id);
+    EXPECT_EQ(targets.bytes(), uint64_t{kWidth * kHeight * 32});
+    EXPECT_FALSE(targets.raster(false).id);
+    EXPECT_EQ(targets.bytes(), uint64_t{kWidth * kHeight * 28});
+    targets.dropRaster();
+    EXPECT_EQ(targets.bytes(), uint64_t{kWidth * kHeight * 24});
 }
 
 TEST_F(FrameTargetsTest, OnePixelIsAPicture) {

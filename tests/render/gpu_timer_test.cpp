@@ -15,7 +15,7 @@ using GpuTimerTest = GlTest;
 void clearMany(const FrameTargets& targets) {
     for (int i = 0; i < 20; ++i) {
         const GLuint value = 0;
-        glClearTexImage(targets.id.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+        glClearTexImage(targets.node.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
     }
 }
 

@@ -36,24 +36,24 @@ using Names = std::set<std::string>;
 
 class PayForUse : public GlTest {
   protected:
-    Names uniforms(const std::vector<std::string>& stages, const FeatureSet& features, bool occlusion = false,
-                   bool probes = false) {
-        ShaderDefines defines = features.defines();
-        defines["TERRAY_OCCLUSION"] = occlusion ? "1" : "0";
-        defines["TERRAY_PHOTO_PROBES"] = probes ? "1" : "0";
-        return uniformsOf(shaders_.require(stages, defines));
+    Names uniforms(const std::vector<std::string>& stages, const FeatureSet& features) {
+        return uniformsOf(shaders_.require(stages, features.defines()));
     }
     ShaderLibrary shaders_;
 };
 
 TEST_F(PayForUse, TheMarchAloneReadsHeightsAndNothingElse) {
     EXPECT_EQ(uniforms({"box.vert", "march.frag"}, {}), (Names{"heightCodes", "nodeIndex"}));
+    EXPECT_EQ(uniforms({"march.comp"}, {}), (Names{"heightCodes", "hitImage", "nodeCount", "nodeImage"}));
 }
 
 TEST_F(PayForUse, EachFeatureOfTheMarchAddsItsOwnTexture) {
-    EXPECT_EQ(uniforms({"box.vert", "march.frag"}, {}, true), (Names{"heightCodes", "nodeIndex", "nodeInFront"}));
+    EXPECT_EQ(uniforms({"box.vert", "march.frag"}, {.occlusion = true}),
+              (Names{"heightCodes", "nodeIndex", "nodeInFront"}));
     EXPECT_EQ(uniforms({"box.vert", "march.frag"}, {.statistics = true}),
               (Names{"heightCodes", "nodeIndex", "stepImage"}));
+    EXPECT_EQ(uniforms({"march.comp"}, {.statistics = true}),
+              (Names{"heightCodes", "hitImage", "nodeCount", "nodeImage", "stepImage"}));
 }
 
 TEST_F(PayForUse, PhotosAreReadOnlyWithImagery) {
@@ -61,21 +61,32 @@ TEST_F(PayForUse, PhotosAreReadOnlyWithImagery) {
     Names withPhotos = bare;
     withPhotos.insert("photos");
     EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {}), bare);
-    EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {}, false, true), bare);
+    EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {.photoProbes = true}), bare);
     EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {.imagery = true}), withPhotos);
-    EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {.imagery = true}, false, true), withPhotos);
+    EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {.imagery = true, .photoProbes = true}), withPhotos);
 }
 
 TEST_F(PayForUse, EveryCombinationOfFeaturesCompiles) {
-    for (int bits = 0; bits < 64; ++bits) {
-        const FeatureSet features{.imagery = (bits & 1) != 0,
-                                  .statistics = (bits & 2) != 0,
-                                  .normals = (bits & 4) != 0,
-                                  .signalSky = (bits & 8) != 0};
-        const bool occlusion = (bits & 16) != 0;
-        const bool probes = (bits & 32) != 0;
-        EXPECT_FALSE(uniforms({"box.vert", "march.frag"}, features, occlusion, probes).empty());
-        EXPECT_FALSE(uniforms({"screen.vert", "resolve.frag"}, features, occlusion, probes).empty());
+    for (int bits = 0; bits < 1 << 9; ++bits) {
+        FeatureSet features{.imagery = (bits & 1) != 0,
+                            .statistics = (bits & 2) != 0,
+                            .normals = (bits & 4) != 0,
+                            .signalSky = (bits & 8) != 0,
+                            .linearColour = (bits & 16) != 0,
+                            .occlusion = (bits & 32) != 0,
+                            .photoProbes = (bits & 64) != 0,
+                            .bilinear = (bits & 128) != 0,
+                            .curved = (bits & 256) != 0};
+        // What a program does not depend on makes no new program.
+        if (features == features.marching()) {
+            EXPECT_FALSE(uniforms({"box.vert", "march.frag"}, features).empty());
+            features.occlusion = false;
+            EXPECT_FALSE(uniforms({"march.comp"}, features).empty());
+        }
+        if (features == features.resolving()) {
+            EXPECT_FALSE(uniforms({"screen.vert", "resolve.frag"}, features).empty());
+            EXPECT_FALSE(uniforms({"resolve.comp"}, features).empty());
+        }
     }
 }
 

@@ -83,6 +83,17 @@ TEST(ShaderLibrary, IncludesEachFileOnceAndRemembersEachLinesOrigin) {
     EXPECT_EQ(origins, "a.frag:0 b.glsl:1 math/c.glsl:1 b.glsl:3 a.frag:3 ");
 }
 
+TEST(ShaderLibrary, IncludesAgainWhatOnlyAFeatureIncludedBefore) {
+    const ShaderFolder folder(
+        ShaderFiles{{"a.frag", "#if TERRAY_X\n#include \"b.glsl\"\n#endif\n#include \"b.glsl\"\n#include \"b.glsl\"\n"},
+                    {"b.glsl", "#ifndef B\n#define B\n#include \"c.glsl\"\n#endif\n"},
+                    {"c.glsl", "common\n"}});
+    const auto resolved = ShaderLibrary(folder.path()).resolve("a.frag", {});
+    ASSERT_TRUE(resolved.ok()) << resolved.failure().message;
+    EXPECT_EQ(occurrences(resolved->text, "common"), 2u);
+    EXPECT_EQ(resolved->files, (std::vector<std::string>{"a.frag", "b.glsl", "c.glsl"}));
+}
+
 TEST(ShaderLibrary, TakesTheNameFromTheRepositorysRootForTheSameFile) {
     const ShaderFolder folder(
         ShaderFiles{{"a.frag", "#include \"shaders/c.glsl\"\n#include \"c.glsl\"\n"}, {"c.glsl", "common\n"}});

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+
+#include "client/render/feature_set.h"
+#include "client/render/frame_targets.h"
+#include "client/render/gpu_timer.h"
+#include "common/view.h"
+#include "shaders/interop.h"
+
+namespace terray {
+
+/// One frame as the launches get it: node and frame buffers, height texture and viewport are bound already.
+struct CastFrame {
+    const View& view;
+    std::span<const interop::NodeParameters> nodes;  ///< front to back
+    FeatureSet features;
+    FrameTargets& targets;
+    GpuTimer* timer = nullptr;  ///< may be null
+
+    void enter(GpuPass pass) const {
+        if (timer != nullptr) timer->enter(pass);
+    }
+};
+
+}  // namespace terray

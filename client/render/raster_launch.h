@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+
+#include "client/render/cast_frame.h"
+#include "client/render/program_cache.h"
+
+namespace terray {
+
+/// Casts rays by rasterising boxes (paper 001, section 3.4): node by node, front to back, an ID pass with the depth
+/// test on and depth writes off, then the march over the back faces with the test set to pass and writes on. Without
+/// the ID pass the depth test itself keeps the nearest hit.
+///
+/// GL thread only.
+class RasterLaunch {
+  public:
+    explicit RasterLaunch(const ShaderLibrary& shaders);
+
+    /// Fills hit, node and, with statistics, steps of the targets.
+    void cast(const CastFrame& frame);
+    /// Fills colour and, with normals, normal. What the resolve shader reads must be bound.
+    void resolve(const CastFrame& frame);
+
+    [[nodiscard]] static uint64_t bufferBytes();
+
+  private:
+    void draw(const GlProgram& program, const GlFramebuffer& framebuffer, size_t node);
+
+    ProgramCache idPrograms_;
+    ProgramCache marchPrograms_;
+    ProgramCache resolvePrograms_;
+    GlBuffer boxIndices_;
+    GlVertexArray vertexArray_;
+};
+
+}  // namespace terray

@@ -1,0 +1,78 @@
+// ray.glsl: a ray through a tile, mirrored so that it never runs towards smaller x or y (paper 001, section 3.1), straight or,
+// with TERRAY_CURVED, bent. Frame: tile. t: view depth in metres; P(t) = eye + t * direction, and bend * t * t higher.
+#ifndef TERRAY_RAY
+#define TERRAY_RAY
+#include "heights.glsl"
+#include "math/box.glsl"
+#include "nodes.glsl"
+#if TERRAY_CURVED
+#include "math/bend.glsl"
+#include "math/contact.glsl"
+#else
+#include "math/column.glsl"
+#endif
+
+// What blockContact and the like answer where the ray stays above.
+const float kNoContact = -1.0;
+
+struct Ray {
+    vec3 eye;
+    vec3 direction;
+    vec3 inverse;
+    bvec2 mirrored;
+#if TERRAY_CURVED
+    float bend;
+#endif
+};
+
+Ray mirroredRay(NodeParameters node, vec3 direction) {
+    Ray ray;
+    ray.mirrored = lessThan(direction.xy, vec2(0.0));
+    ray.direction = vec3(abs(direction.xy), direction.z);
+    ray.eye = vec3(mix(node.eye.xy, vec2(float(kCore)) - node.eye.xy, ray.mirrored), node.eye.z);
+    ray.inverse = vec3(safeInverse(ray.direction.x), safeInverse(ray.direction.y), safeInverse(ray.direction.z));
+#if TERRAY_CURVED
+    ray.bend = rayBend(node, direction);
+#endif
+    return ray;
+}
+
+#if TERRAY_CURVED
+
+// The part of a ray over a box. A bent ray is not cut at top and bottom: the pyramid's own top takes care of the one,
+// aboveFloor of the other.
+Interval clippedRay(Ray ray, vec3 boxMin, vec3 boxMax) {
+    float everywhere = 1e30;
+    return boxInterval(vec3(ray.eye.xy, 0.0), vec3(ray.inverse.xy, 1.0), vec3(boxMin.xy, -everywhere),
+                       vec3(boxMax.xy, everywhere));
+}
+
+// t at which the ray is first at or below `top` within [enter, leave], or kNoContact.
+float blockContact(Ray ray, float top, float enter, float leave) {
+    Clearance clearance;
+    clearance.bend = ray.bend;
+    clearance.slope = bentSlope(ray.direction.z, ray.bend, enter);
+    clearance.start = bentHeight(ray.eye.z, ray.direction.z, ray.bend, enter) - top;
+    float s = firstContact(clearance, leave - enter);
+    return s < 0.0 ? kNoContact : min(enter + s, leave);
+}
+
+// Whether a contact belongs to the ground and not to what is below a node's box.
+bool aboveFloor(Ray ray, float t, float bottom) {
+    return bentHeight(ray.eye.z, ray.direction.z, ray.bend, t) >= bottom;
+}
+
+#else
+
+Interval clippedRay(Ray ray, vec3 boxMin, vec3 boxMax) { return boxInterval(ray.eye, ray.inverse, boxMin, boxMax); }
+
+float blockContact(Ray ray, float top, float enter, float leave) {
+    if (!meetsColumn(top, ray.eye.z, ray.direction.z, enter, leave)) return kNoContact;
+    return columnTime(top, ray.eye.z, ray.direction.z, ray.inverse.z, enter, leave);
+}
+
+bool aboveFloor(Ray ray, float t, float bottom) { return true; }
+
+#endif
+
+#endif

@@ -1,0 +1,39 @@
+// resolve.glsl: from a pixel's hit to its colour: slope, photo, light, sky. The same for the raster and the compute launch.
+#ifndef TERRAY_RESOLVE
+#define TERRAY_RESOLVE
+#include "light.glsl"
+#include "nodes.glsl"
+#include "photo.glsl"
+#include "sky.glsl"
+#include "srgb.glsl"
+#include "surface.glsl"
+
+layout(binding = TERRAY_UNIT_HIT) uniform sampler2D hits;
+layout(binding = TERRAY_UNIT_NODE) uniform usampler2D hitNodes;
+
+struct Resolved {
+    vec3 colour;  // as it is stored: sRGB or linear
+    vec3 normal;  // world; 0 for the sky
+};
+
+Resolved resolvePixel(ivec2 pixel) {
+    vec2 position = picturePosition(vec2(pixel) + 0.5);
+    uint found = texelFetch(hitNodes, pixel, 0).r;
+    Resolved resolved = Resolved(vec3(0.0), vec3(0.0));
+    if (found == 0u) {
+        vec3 direction = frame.forward.xyz + position.x * frame.right.xyz + position.y * frame.up.xyz;
+        resolved.colour = skyColour(normalize(direction), frame.sun.xyz);
+    } else {
+        NodeParameters node = nodes[found - 1u];
+        vec4 hit = texelFetch(hits, pixel, 0);
+        vec2 slope = smoothGradient(hit.xy, node.source.x, hit.z);
+        vec2 rise = slope * (node.right.w / node.eye.w);  // metres per metre to the east and to the south
+        resolved.normal = normalize(vec3(-rise.x, rise.y, 1.0));
+        vec3 ground = groundColour(node, hit.xy, slope, hit.w, position);
+        resolved.colour = lit(ground, resolved.normal, frame.sun.xyz);
+    }
+    resolved.colour = storedColour(resolved.colour);
+    return resolved;
+}
+
+#endif
