@@ -7,7 +7,7 @@
 
 struct Interval {
     real enter;  // >= 0
-    real exit;   // the ray misses the box when exit < enter
+    real exit;   // the ray misses the box when exit < enter; so does one within an upper face: that is the next box's lower
 };
 
 // A reciprocal that is finite for 0, -0 and denormals, so that slabs need no special cases: 0 * inf never arises.

@@ -1,0 +1,90 @@
+// shaders/math/bend.glsl: bent rays, alone and over columns, against dense points in double.
+
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "tests/common/random.h"
+#include "tests/shader_math/both.h"
+#include "tests/shader_math/walks.h"
+
+namespace {
+
+using terray::test::Heights;
+using terray::test::kRoundoff;
+using terray::test::Random;
+using terray::test::Ray;
+
+template <class Math>
+class Bend : public testing::Test {};
+TYPED_TEST_SUITE(Bend, terray::test::Precisions, terray::test::PrecisionNames);
+
+TYPED_TEST(Bend, OfNothingIsAStraightRay) {
+    for (const float t : {0.0f, 1.0f, 1000.0f}) EXPECT_EQ(TypeParam::bentHeight(100, -0.25, 0, t), 100 - t / 4);
+    EXPECT_EQ(TypeParam::bentSlope(-0.25, 0, 1000), -0.25);
+}
+
+TYPED_TEST(Bend, GainsTheDropOfAGlobe) {
+    // 100 km over a sphere of 6371 km: d^2 / 2 R = 784.8 m.
+    using real = typename TypeParam::real;
+    const real bend = real(1.0 / (2 * 6371e3));
+    EXPECT_NEAR(TypeParam::bentHeight(0, 0, bend, real(1e5)), 784.80615, 784.9 * 4 * kRoundoff<TypeParam> + 1e-5);
+    EXPECT_NEAR(TypeParam::bentSlope(0, bend, real(1e5)), 1e5 / 6371e3, 0.016 * 4 * kRoundoff<TypeParam>);
+}
+
+TYPED_TEST(Bend, SlopeIsTheDerivativeOfTheHeight) {
+    // Central differences of a parabola are exact; with powers of two so is every operation.
+    for (const float t : {0.0f, 4.0f, 64.0f})
+        EXPECT_EQ((TypeParam::bentHeight(8, -2, 0.25, t + 1) - TypeParam::bentHeight(8, -2, 0.25, t - 1)) / 2,
+                  TypeParam::bentSlope(-2, 0.25, t));
+}
+
+TYPED_TEST(Bend, OverOneColumnTouchesAtTheParabolasRoots) {
+    // 10 - 6 t + t^2 over level 5: roots 1 and 5; over level 1: (t - 3)^2; over level 0: none.
+    const auto first = [](int top) {
+        return terray::test::walkColumns<TypeParam>(Heights(16, [&](int, int) { return top; }),
+                                                    {{0, 0.5, 10}, {1, 0, -6}, 1});
+    };
+    EXPECT_EQ(first(5), 1);
+    EXPECT_EQ(first(1), 3) << "tangent, exactly between two cells";
+    EXPECT_EQ(first(0), std::nullopt);
+}
+
+TYPED_TEST(Bend, OverColumnsTouchesWhereDensePointsFirstLieInside) {
+    Random random(8);
+    int met = 0;
+    int dipped = 0;  // rays that touch while falling although they rise again before they leave the column
+    for (int i = 0; i < 2000; ++i) {
+        const Heights hills(24, [&](int x, int y) {
+            return 40 + 30 * std::sin(0.4 * x + 0.1 * i) * std::cos(0.3 * y) + random.between(0, 4);
+        });
+        const typename TypeParam::vec3 eye(random.between(-30, 10), random.between(-20, 20), random.between(60, 120));
+        const typename TypeParam::vec3 direction(random.between(0.2, 1), random.between(0, 0.6), random.between(-8, 0));
+        const Ray<TypeParam> ray = {eye, direction, static_cast<typename TypeParam::real>(random.between(0.01, 0.4))};
+        const auto found = terray::test::walkColumns<TypeParam>(hills, ray);
+        met += found.has_value();
+        const double end = found ? double{*found} : 1000;
+        for (double t = 0; t < end - 1e-4; t += 1.0 / 256) {
+            const double x = ray.x(t);
+            const double y = ray.y(t);
+            if (x < 0 || y < 0) continue;
+            if (x > 24 || y > 24) break;
+            // Within 1e-4 texels of a column's side rounding may take it for its neighbour.
+            if (std::min(std::abs(x - std::round(x)), std::abs(y - std::round(y))) < 1e-4) continue;
+            ASSERT_GT(ray.height(t), hills.column(x, y) - 1e-3) << i << " at " << t;
+        }
+        if (!found) continue;
+        double lowest = 1e9;
+        for (const double x : {-1e-4, 1e-4})
+            for (const double y : {-1e-4, 1e-4})
+                lowest = std::min(lowest, ray.height(end) - hills.column(ray.x(end) + x, ray.y(end) + y));
+        EXPECT_LE(lowest, 1e-3) << i;
+        const double vertex = -double{direction.z} / (2 * double{ray.bend});
+        dipped += end < vertex && hills.column(ray.x(end), ray.y(end)) == hills.column(ray.x(vertex), ray.y(vertex));
+    }
+    EXPECT_GT(met, 300);
+    EXPECT_GT(dipped, 5);
+}
+
+}  // namespace
