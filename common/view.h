@@ -1,6 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include <glm/vec3.hpp>
+
+#include "common/earth_curvature.h"
 
 namespace terray {
 
@@ -10,15 +14,17 @@ namespace terray {
 /// j counted from the top, is P(t) = eye + t * direction with
 ///     direction = forward + (2 (i + 0.5) / width - 1) tanHalfWidth right + (1 - 2 (j + 0.5) / height) tanHalfHeight
 ///     up,
-/// not normalised: t is then the distance along the view axis (view depth) in metres.
+/// not normalised: t is then the distance along the view axis (view depth) in metres. Over a curved earth P(t) is
+/// higher than that by the drop at its place (common/earth_curvature.h).
 struct View {
     glm::dvec3 eye{0};
     glm::dvec3 right{1, 0, 0};  ///< right, up, forward: orthonormal, right-handed (right x up = -forward)
     glm::dvec3 up{0, 0, 1};
     glm::dvec3 forward{0, 1, 0};
-    double tanHalfHeight = 0.5;  ///< tangent of half the vertical field of view
-    int width = 1;               ///< pixels
-    int height = 1;              ///< pixels
+    double tanHalfHeight = 0.5;           ///< tangent of half the vertical field of view
+    int width = 1;                        ///< pixels
+    int height = 1;                       ///< pixels
+    std::optional<EarthCurvature> earth;  ///< none: a flat earth
 
     [[nodiscard]] double tanHalfWidth() const { return tanHalfHeight * width / height; }
     /// Pixels per unit of slope on the image axis: an object of size s at view depth d covers s / d * focalPixels().
@@ -27,6 +33,12 @@ struct View {
     [[nodiscard]] glm::dvec3 direction(double pixelX, double pixelY) const {
         return forward + (2 * pixelX / width - 1) * tanHalfWidth() * right +
                (1 - 2 * pixelY / height) * tanHalfHeight * up;
+    }
+    /// P(t) of a ray.
+    [[nodiscard]] glm::dvec3 at(const glm::dvec3& direction, double t) const {
+        glm::dvec3 place = eye + t * direction;
+        if (earth) place.z += earth->drop(t * direction.x, t * direction.y);
+        return place;
     }
 };
 

@@ -116,9 +116,9 @@ Selection Traversal::run() {
 Shown Traversal::visit(Cell cell) {
     if (overflowed_) return {};
     const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground)};
-    if (!frustum_.mayMeet(boxOf(cell.id, reach, tree_.tiling()))) return {};
+    if (!frustum_.mayMeet(seenBoxOf(cell.id, reach, tree_.tiling(), view_))) return {};
     const HeightRange heights{cell.ground[4].bottom, cell.ground[4].top};
-    const Metres distance = distanceTo(boxOf(cell.id, heights, tree_.tiling()), view_.eye);
+    const Metres distance = distanceTo(seenBoxOf(cell.id, heights, tree_.tiling(), view_), view_.eye);
     chooseHeights(cell, distance);
     chooseImagery(cell, distance);
     if (cell.heights.settled && cell.imagery.settled) return emit(cell, distance);
@@ -196,7 +196,7 @@ Shown Traversal::emit(const Cell& cell, Metres distance) {
         .heightsExact = cell.heights.settled && cell.heights.exact,
         .imageryExact = cell.imagery.settled && cell.imagery.exact,
     };
-    if (!frustum_.mayMeet(boxOf(cell.id, {node.minHeight, node.maxHeight}, tree_.tiling()))) return {};
+    if (!frustum_.mayMeet(seenBoxOf(cell.id, {node.minHeight, node.maxHeight}, tree_.tiling(), view_))) return {};
     result_.nodes.push_back(node);
     overflowed_ = result_.nodes.size() > 4 * options_.maxNodes + 64;  // some may yet be merged, but not that many
     return shownBy(cell);

@@ -27,6 +27,10 @@ namespace terray {
 // close every level jump. Culling uses these boxes too, for a wall may be all of a cell that the picture sees. (Not the
 // neighbours' errors in place of their bounds: a coarse tile's apron is a mean, and hides a pit that a finer neighbour
 // shows.)
+//
+// Over a curved earth (View::earth) frustum and distances are asked about boxes lowered by the drop, as they are seen.
+// Seen from above, rays still run straight, so the order of nodes is the same; and walls are about heights at one
+// place, so they reach as deep. A projected error is the same ratio of error to distance.
 
 struct SelectionOptions {
     Pixels tolerance{2.0 / 3.0};   ///< of the projected geometric error (paper 001, section 4)

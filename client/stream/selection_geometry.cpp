@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "common/check.h"
 
@@ -34,6 +35,15 @@ std::optional<TileId> neighbour(const TileId& id, int dx, int dy) {
 Box boxOf(const TileId& cell, const HeightRange& heights, const Tiling& tiling) {
     const GroundRect ground = tiling.bounds(cell);
     return {{ground.west, ground.south, heights.min}, {ground.east, ground.north, heights.max}};
+}
+
+Box seenBoxOf(const TileId& cell, const HeightRange& heights, const Tiling& tiling, const View& view) {
+    Box box = boxOf(cell, heights, tiling);
+    if (!view.earth) return box;
+    const DropRange drop = dropOver(*view.earth, tiling.bounds(cell), glm::dvec2(view.eye));
+    box.min.z -= drop.greatest;
+    box.max.z -= drop.least;
+    return box;
 }
 
 Metres distanceTo(const Box& box, const glm::dvec3& point) {

@@ -40,7 +40,7 @@ TEST(SelectionOrder, NoRayMeetsALaterNodeBeforeAnEarlierOne) {
     size_t pairs = 0;
     for (int round = 0; round < 400; ++round) {
         const TileTree tree = randomTree(dataset, random);
-        const View view = randomView(dataset, random);
+        const View view = overSomeEarth(randomView(dataset, random), random);
         const auto nodes = select(tree, view, {}).nodes;
         for (int sample = 0; sample < 60; ++sample) {
             const glm::dvec3 ray = randomRay(view, random);
@@ -88,19 +88,21 @@ TEST(SelectionOrder, FrustumKeepsEveryBoxThatARayMeets) {
 TEST(SelectionOrder, EveryVisiblePlaceIsCoveredByExactlyOneNode) {
     const FakeDataset& dataset = hillyDataset();
     Random random(3);
-    int visible = 0;
-    for (int round = 0; round < 150; ++round) {
+    int visible = 0, overCurvedEarth = 0;
+    for (int round = 0; round < 300; ++round) {
         const TileTree tree = randomTree(dataset, random);
-        const View view = randomView(dataset, random);
+        const View view = overSomeEarth(randomView(dataset, random), random);
         const auto nodes = select(tree, view, {}).nodes;
         for (int sample = 0; sample < 100; ++sample) {
             const glm::dvec2 place = randomPlace(dataset, random);
-            const glm::dvec3 offset = glm::dvec3(place, groundHeight(dataset, place)) - view.eye;
+            glm::dvec3 offset = glm::dvec3(place, groundHeight(dataset, place)) - view.eye;
+            if (view.earth) offset.z -= view.earth->drop(glm::dvec2(offset));
             const double depth = glm::dot(offset, view.forward);
             if (depth <= 0 || std::abs(glm::dot(offset, view.right)) > depth * view.tanHalfWidth() ||
                 std::abs(glm::dot(offset, view.up)) > depth * view.tanHalfHeight)
                 continue;
             ++visible;
+            overCurvedEarth += view.earth ? 1 : 0;
             const auto covers = [&](const DrawNode& node) {
                 const GroundRect square = tree.tiling().bounds(node.cell);
                 return place.x >= square.west && place.x < square.east && place.y > square.south &&
@@ -112,7 +114,31 @@ TEST(SelectionOrder, EveryVisiblePlaceIsCoveredByExactlyOneNode) {
             if (count == 0) ADD_FAILURE() << "round " << round << " place " << place.x << ", " << place.y;
         }
     }
-    EXPECT_GT(visible, 1000);
+    EXPECT_GT(visible - overCurvedEarth, 1000);
+    EXPECT_GT(overCurvedEarth, 1000);
+}
+
+TEST(SelectionOrder, OverACurvedEarthABoxHoldsAllThatItsCellShows) {
+    const Tiling& tiling = hillyDataset().metadata.tiling;
+    Random random(4);
+    for (int round = 0; round < 500; ++round) {
+        const View view = overSomeEarth(randomView(hillyDataset(), random), random);
+        const TileId cell{3, static_cast<uint32_t>(random.uniform(0, 8)), static_cast<uint32_t>(random.uniform(0, 8))};
+        const HeightRange heights{-50, 200};
+        const Box box = seenBoxOf(cell, heights, tiling, view), onMap = boxOf(cell, heights, tiling);
+        if (!view.earth) {
+            EXPECT_EQ(box.min, onMap.min);
+            EXPECT_EQ(box.max, onMap.max);
+            continue;
+        }
+        for (int sample = 0; sample < 50; ++sample) {
+            const glm::dvec3 place(random.uniform(onMap.min.x, onMap.max.x), random.uniform(onMap.min.y, onMap.max.y),
+                                   sample % 2 == 0 ? heights.min : heights.max);
+            const double seen = place.z - view.earth->drop(glm::dvec2(place - view.eye));
+            ASSERT_GE(seen, box.min.z - 1e-9);
+            ASSERT_LE(seen, box.max.z + 1e-9);
+        }
+    }
 }
 
 TEST(SelectionOrder, DistanceIsToTheNearestPointOfTheBox) {

@@ -44,6 +44,17 @@ inline View randomView(const FakeDataset& dataset, Random& random) {
     return viewOf(camera, 800, 500);
 }
 
+/// The view over flat ground, or as often over an earth so small and askew that ground drops by hundreds of metres.
+inline View overSomeEarth(View view, Random& random) {
+    if (random.chance(0.5)) return view;
+    const double size = std::pow(10.0, random.uniform(-6, -3.7)), narrow = random.uniform(0.2, 1);
+    const double turn = random.uniform(0, 3.14), c = std::cos(turn), s = std::sin(turn);
+    view.earth = EarthCurvature{.xx = size * (c * c + narrow * s * s),
+                                .xy = size * 2 * c * s * (1 - narrow),
+                                .yy = size * (s * s + narrow * c * c)};
+    return view;
+}
+
 /// A tree in which a random part of the tiles is resident, and another part known only.
 inline TileTree randomTree(const FakeDataset& dataset, Random& random) {
     TileTree tree = rootsOnly(dataset);

@@ -97,6 +97,14 @@ TEST(Walls, BoxesHoldTheSurfaceThatIsDrawn) {
     }
 }
 
+/// Least and greatest height of a ray over an interval: a parabola's least may lie between the ends.
+std::pair<double, double> heightsBetween(const View& view, const glm::dvec3& ray, double t0, double t1) {
+    const double a = view.at(ray, t0).z, b = view.at(ray, t1).z;
+    const double bend = view.earth ? view.earth->drop(ray.x, ray.y) : 0;
+    const double vertex = bend > 0 ? std::clamp(-ray.z / (2 * bend), t0, t1) : t0;
+    return {std::min({a, b, view.at(ray, vertex).z}), std::max(a, b)};
+}
+
 /// Whether a ray hits a node's solid columns, walking them one by one: the renderer's task, done plainly.
 bool hits(const FakeDataset& dataset, const DrawNode& node, const View& view, glm::dvec3 ray) {
     const Tiling& tiling = dataset.metadata.tiling;
@@ -109,7 +117,6 @@ bool hits(const FakeDataset& dataset, const DrawNode& node, const View& view, gl
     };
     cut(view.eye.x, ray.x, cell.west, cell.east);
     cut(view.eye.y, ray.y, cell.south, cell.north);
-    cut(view.eye.z, ray.z, node.minHeight, node.maxHeight);
     const double spacing = tiling.spacing(node.heightTile.level);
     for (double t = enter; t < leave;) {
         // The next column border along either axis.
@@ -125,8 +132,8 @@ bool hits(const FakeDataset& dataset, const DrawNode& node, const View& view, gl
         const glm::dvec2 inside = glm::clamp(glm::dvec2(middle), glm::dvec2(cell.west, cell.south) + 1e-6,
                                              glm::dvec2(cell.east, cell.north) - 1e-6);
         const auto height = shownHeight(dataset, node, inside, {0, 0});
-        const double lowest = std::min(view.eye.z + t * ray.z, view.eye.z + std::min(next, leave) * ray.z);
-        if (height && lowest <= *height) return true;
+        const auto [lowest, highest] = heightsBetween(view, ray, t, std::min(next, leave));
+        if (height && lowest <= *height && highest >= node.minHeight) return true;
         t = next;
     }
     return false;
@@ -137,24 +144,29 @@ TEST(Walls, NoRayThatEntersTheGroundPassesThroughIt) {
     const GroundRect ground = dataset.metadata.groundBounds();
     const double low = dataset.metadata.minHeight;
     Random random(6);
-    int rays = 0;
-    for (int round = 0; round < 1500; ++round) {
+    int rays = 0, bent = 0;
+    for (int round = 0; round < 2000; ++round) {
         const TileTree tree = randomTree(dataset, random);
-        const View view = randomView(dataset, random);
+        const View view = overSomeEarth(randomView(dataset, random), random);
         const auto nodes = select(tree, view, {}).nodes;
         for (int sample = 0; sample < 40; ++sample) {
             const glm::dvec3 ray = view.direction(random.uniform(0, view.width), random.uniform(0, view.height));
             // It must hit if it is inside the ground's outline where it is as low as the lowest sample.
             if (ray.z >= 0) continue;
-            const glm::dvec3 bottom = view.eye + (low - view.eye.z) / ray.z * ray;
+            const double bend = view.earth ? view.earth->drop(ray.x, ray.y) : 0;
+            const double root = ray.z * ray.z - 4 * bend * (view.eye.z - low);
+            if (root < 0) continue;  // over the horizon
+            const glm::dvec3 bottom = view.at(ray, 2 * (view.eye.z - low) / (std::sqrt(root) - ray.z));
             if (!contains(ground, glm::dvec2(bottom))) continue;
             ++rays;
+            bent += view.earth ? 1 : 0;
             const bool hit = std::any_of(nodes.begin(), nodes.end(),
                                          [&](const DrawNode& node) { return hits(dataset, node, view, ray); });
             ASSERT_TRUE(hit) << "round " << round << " sample " << sample;
         }
     }
-    EXPECT_GT(rays, 3000);
+    EXPECT_GT(rays - bent, 3000);
+    EXPECT_GT(bent, 1000);
 }
 
 TEST(Walls, AtTheEdgeAndAtHolesReachOneFloor) {
