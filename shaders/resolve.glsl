@@ -32,7 +32,7 @@ Resolved resolvePixel(ivec2 pixel) {
         vec3 ground = groundColour(node, hit.xy, slope, hit.w, position);
         resolved.colour = lit(ground, resolved.normal, frame.sun.xyz);
     }
-    resolved.colour = storedColour(resolved.colour);
+    resolved.colour = storedColour(resolved.colour, pixel);
     return resolved;
 }
 
