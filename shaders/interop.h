@@ -26,11 +26,12 @@ using uvec4 = glm::uvec4;
 #define TERRAY_BUFFER_NODES 0  // SSBO: NodeParameters[]
 #define TERRAY_BUFFER_FRAME 1  // UBO: FrameParameters
 #define TERRAY_BUFFER_BOXES 2  // SSBO: vec4[], of each node the pixels that its box covers; compute launch
+#define TERRAY_BUFFER_BINS 3   // SSBO: uint[], of each square of pixels a bit for each node; compute launch
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
 
-// Pixels along the side of a work group of the compute launch, and nodes that it bins at a time.
+// Compute launch: pixels along the side of a work group, and of the square of pixels that nodes are binned to.
 #define TERRAY_GROUP_SIDE 8
-#define TERRAY_BIN_NODES 2048
+#define TERRAY_BIN_SIDE 32
 
 // NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear.
 #define TERRAY_START_LEVEL_MASK 0xffu

@@ -2,7 +2,8 @@
 // Frame: tile. Source: Dick, Krueger, Westermann 2009, sections 3.1 and 3.2; patches: patches.glsl.
 // Watertight: the ground is solid, so a ray that enters below the surface hits where it enters; cells are integers; t never
 // decreases; each pass of the loop either raises a cell coordinate or goes one level down. There are at most 1024 of the
-// former; each climbs at most one level, so with the 8 levels of the start there are at most 1032 of the latter.
+// former; each climbs at most one level, so with the 8 levels of the start there are at most 1032 of the latter. A ray meets
+// at most 512 blocks of 2 x 2 cells, and in each at most 5 patches and the step behind it.
 // A ray that reaches kMaxSteps is reported as a defect.
 #ifndef TERRAY_MARCH
 #define TERRAY_MARCH
@@ -15,7 +16,11 @@
 #include "patches.glsl"
 #endif
 
+#if TERRAY_BILINEAR
+const int kMaxSteps = 1024 + 1032 + 512 * 6 + 1;
+#else
 const int kMaxSteps = 1024 + 1032 + 1;
+#endif
 
 struct March {
     bool hit;
@@ -47,37 +52,55 @@ March marchNode(NodeParameters node, vec3 direction) {
     int level = coarsest;
     float t = box.enter;
 
-    for (; march.steps < kMaxSteps; ++march.steps) {
-        ivec2 block = cell >> level;
-        ivec2 stored = mix(block, (kCore >> level) - 1 - block, ray.mirrored);
-        uint top = blockMaximum(stored, node.source.x, level);
-        ivec2 edge = blockEdge(cell, level);
-        vec2 times = edgeTimes(edge, ray.eye.xy, ray.inverse.xy);
-        float leave = max(t, min(min(times.x, times.y), box.exit));
-
-        float contact = top == 0u ? kNoContact : blockContact(ray, float(top), t, leave);
-        if (contact != kNoContact && level > leaf) {
-            t = contact;
-            cell = cellAt(t, cell, edge, ray.eye.xy, ray.direction.xy);
-            --level;
-            continue;
+    // Blocks until one at the leaf level is met, then its surface: two phases, so that rays of a group that still walk do not
+    // pay for the tests of those that have arrived (Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on
+    // GPUs").
+    for (;;) {
+        ivec2 edge = ivec2(0);
+        vec2 times = vec2(0.0);
+        float leave = t;
+        float contact = kNoContact;
+        for (; march.steps < kMaxSteps; ++march.steps) {
+            ivec2 block = cell >> level;
+            ivec2 stored = mix(block, (kCore >> level) - 1 - block, ray.mirrored);
+            uint top = blockMaximum(stored, node.source.x, level);
+            edge = blockEdge(cell, level);
+            times = edgeTimes(edge, ray.eye.xy, ray.inverse.xy);
+            leave = max(t, min(min(times.x, times.y), box.exit));
+            contact = top == 0u ? kNoContact : blockContact(ray, float(top), t, leave);
+            if (contact != kNoContact) {
+                if (level == leaf) break;
+                t = contact;
+                cell = cellAt(t, cell, edge, ray.eye.xy, ray.direction.xy);
+                --level;
+            } else {
+                if (leave >= box.exit) return march;
+                cell = cellAfter(cell, edge, times, ray.eye.xy, ray.direction.xy);
+                if (any(greaterThan(cell, last))) return march;
+                level = max(levelAfter(level, coarsest, edge, times), leaf);
+                t = leave;
+            }
         }
-#if TERRAY_BILINEAR
-        if (contact != kNoContact && bilinear) contact = patchContact(ray, node.source.x, edge, t, leave, march.steps);
-#endif
-        if (contact != kNoContact) {
-            march.hit = aboveFloor(ray, contact, boxMin.z);
-            march.t = contact;
+        if (contact == kNoContact) {
+            march.exhausted = true;
             return march;
         }
-        if (leave >= box.exit) return march;
-        cell = cellAfter(cell, edge, times, ray.eye.xy, ray.direction.xy);
-        if (any(greaterThan(cell, last))) return march;
-        level = max(levelAfter(level, coarsest, edge, times), leaf);
-        t = leave;
+#if TERRAY_BILINEAR
+        if (bilinear) contact = patchContact(ray, node.source.x, edge, t, leave, march.steps);
+        if (contact == kNoContact) {
+            ++march.steps;
+            if (leave >= box.exit) return march;
+            cell = cellAfter(cell, edge, times, ray.eye.xy, ray.direction.xy);
+            if (any(greaterThan(cell, last))) return march;
+            level = levelAfter(level, coarsest, edge, times);
+            t = leave;
+            continue;
+        }
+#endif
+        march.hit = aboveFloor(ray, contact, boxMin.z);
+        march.t = contact;
+        return march;
     }
-    march.exhausted = true;
-    return march;
 }
 
 #endif

@@ -9,9 +9,12 @@
 
 namespace terray {
 
-/// Casts rays by dispatches alone (design, section 5): each work group bins the nodes' boxes to its 8 x 8 pixels and
-/// marches its rays through them, front to back, until the first hit. Nothing is rasterised, no depth or ID texture
-/// exists. The march is the raster launch's own (shaders/march.glsl), and so is the image.
+/// Casts rays by dispatches alone (design, section 5): one bins the nodes' boxes to squares of 32 x 32 pixels, the next
+/// marches each pixel's ray through its bin, front to back, until the first hit. Nothing is rasterised, no depth or ID
+/// texture exists. The march is the raster launch's own (shaders/march.glsl), and so is the image.
+///
+/// (Binning within the marching group, in shared memory, was twice as slow on llvmpipe: its barriers keep the march's
+/// variables out of registers.)
 ///
 /// GL thread only.
 class ComputeLaunch {
@@ -23,17 +26,24 @@ class ComputeLaunch {
     /// Fills colour and, with normals, normal. What the resolve shader reads must be bound.
     void resolve(const CastFrame& frame);
 
-    /// Bytes of the buffer of boxes.
-    [[nodiscard]] uint64_t bufferBytes() const { return capacity_ * sizeof(glm::vec4); }
+    /// Bytes of the buffers of boxes and bins.
+    [[nodiscard]] uint64_t bufferBytes() const { return boxBuffer_.bytes + binBuffer_.bytes; }
 
   private:
-    void uploadBoxes(const CastFrame& frame);
+    /// A buffer that grows; what it held is lost then.
+    struct Buffer {
+        GlBuffer object;
+        uint64_t bytes = 0;
+        void require(uint64_t needed);
+    };
+    void bin(const CastFrame& frame);
 
+    ProgramCache binPrograms_;
     ProgramCache marchPrograms_;
     ProgramCache resolvePrograms_;
-    GlBuffer boxBuffer_;
+    Buffer boxBuffer_;
+    Buffer binBuffer_;
     std::vector<glm::vec4> boxes_;
-    uint64_t capacity_ = 0;
 };
 
 }  // namespace terray
