@@ -57,6 +57,7 @@ FOREIGN = {
     "GLFW": (r"GLFW/.*", {"client/view": MANY}),
     "Dear ImGui": (r"(imgui/)?imgui\w*\.h", {"client/view": MANY}),
     "GoogleTest": (r"(gtest|gmock)/.*", {}),
+    "AVX2 intrinsics": (r"immintrin\.h", {}),
 }
 
 SOURCE_FOLDERS = ["client", "common", "preprocess", "server", "shaders", "tests"]
