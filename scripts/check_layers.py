@@ -24,8 +24,9 @@ PROJECT = {
     "shaders": ["shaders/math"],
     "client/stream": ["common"],
     "client/render": ["common", "shaders/interop.h"],
+    "client/overlay": ["common", "client/stream"],
     "client/output": ["common"],
-    "client/engine": ["common", "client/stream", "client/render"],
+    "client/engine": ["common", "client/stream", "client/overlay", "client/render"],
     "client/view": ["common", "client/stream", "client/render", "client/output", "client/engine"],
     "client/bench": ["common", "client/stream", "client/render", "client/output", "client/engine"],
 }
@@ -50,6 +51,7 @@ FOREIGN = {
     "OpenImageIO": (r"OpenImageIO/.*", {"preprocess": 1, "client/output": MANY}),
     "OpenEXR": (r"(OpenEXR|Imath)/.*|(Imf|Imath|Iex|half)\w*\.h", {"client/output": MANY}),
     "stb": (r"(stb/)?stb_\w+\.h", {"preprocess": 1}),
+    "pugixml": (r"pugixml\.hpp", {"client/overlay": 1}),
     "Boost": (r"boost/.*", {"server": MANY}),
     "libcurl": (r"curl/.*", {"client/stream": 1}),
     "EGL": (r"(EGL|KHR)/.*|epoxy/egl\w*\.h", {"client/render": 1}),

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "client/stream/dataset_source.h"
+
+namespace terray {
+
+/// Heights of a dataset's finest samples at single places. Reads tiles from the root down to the place's own, and keeps
+/// the last of them, so that places near one another cost one reading. One thread at a time.
+class GroundHeights {
+  public:
+    /// @param source  outlives this object
+    explicit GroundHeights(const TileSource& source) : source_(source) {}
+
+    /// Height of the sample whose cell holds the place, metres: the top of its column. None where there is no surface.
+    /// Throws Error(dataset) when a tile cannot be read.
+    [[nodiscard]] std::optional<double> at(glm::dvec2 place);
+
+  private:
+    [[nodiscard]] HeightTile read(const TileId& id) const;
+    /// The deepest tile over a place; none beyond the surface.
+    [[nodiscard]] bool find(glm::dvec2 place);
+
+    const TileSource& source_;
+    std::optional<HeightTile> tile_;
+};
+
+}  // namespace terray
