@@ -15,7 +15,7 @@ struct DrawNode {
     TileId cell;
     TileId heightTile;                  ///< covers cell
     std::optional<TileId> imageryTile;  ///< covers cell; none: neutral ground
-    /// The box that is rasterised, metres. maxHeight bounds the drawn surface from above. minHeight reaches below every
+    /// Heights of the box that is rasterised, metres, not exaggerated. maxHeight bounds the drawn surface from above. minHeight reaches below every
     /// surface that a neighbouring node may show along the shared border, so that walls close level jumps (design: the
     /// ground is solid). It does not bound how deep the solid goes.
     double minHeight = 0;

@@ -16,6 +16,10 @@ namespace terray {
 ///     up,
 /// not normalised: t is then the distance along the view axis (view depth) in metres. Over a curved earth P(t) is
 /// higher than that by the drop at its place (common/earth_curvature.h).
+///
+/// Exaggerated, z of this world is `exaggeration` times the height in the dataset, for eye, ground and drop alike: what
+/// hides what from the eye is as it was, and an eye near the ground stays near it. Bounds and errors of tiles, whatever
+/// is stored, and camera positions stay heights.
 struct View {
     glm::dvec3 eye{0};
     glm::dvec3 right{1, 0, 0};  ///< right, up, forward: orthonormal, right-handed (right x up = -forward)
@@ -24,7 +28,8 @@ struct View {
     double tanHalfHeight = 0.5;           ///< tangent of half the vertical field of view
     int width = 1;                        ///< pixels
     int height = 1;                       ///< pixels
-    std::optional<EarthCurvature> earth;  ///< none: a flat earth
+    std::optional<EarthCurvature> earth;  ///< of this world, so exaggerated; none: a flat earth
+    double exaggeration = 1;              ///< z over height, > 0
 
     [[nodiscard]] double tanHalfWidth() const { return tanHalfHeight * width / height; }
     /// Pixels per unit of slope on the image axis: an object of size s at view depth d covers s / d * focalPixels().
@@ -41,5 +46,18 @@ struct View {
         return place;
     }
 };
+
+/// The least and the greatest exaggeration: beyond them floats relative to a tile lose the ground.
+inline constexpr double kLeastExaggeration = 0.01;
+inline constexpr double kGreatestExaggeration = 100;
+
+/// A view of heights as a view of the same place with all heights multiplied.
+[[nodiscard]] inline View exaggerated(View view, double factor) {
+    view.eye.z *= factor;
+    view.exaggeration *= factor;
+    if (view.earth)
+        view.earth = EarthCurvature{view.earth->xx * factor, view.earth->xy * factor, view.earth->yy * factor};
+    return view;
+}
 
 }  // namespace terray

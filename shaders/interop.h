@@ -44,7 +44,7 @@ using uvec4 = glm::uvec4;
 // core), z in its height codes, so that a column's top is exactly its code.
 struct NodeParameters {
     vec4 eye;      // xyz: the eye in the tile frame; w: metres per texel
-    vec4 right;    // xyz: half the picture's width at view depth 1 m, in the tile frame; w: metres per code
+    vec4 right;    // xyz: half the picture's width at view depth 1 m, in the tile frame; w: metres per code, drawn
     vec4 up;       // xyz: half the picture's height at view depth 1 m, in the tile frame; w: raster margin, metres
     vec4 forward;  // xyz: the view axis, 1 m, in the tile frame
     vec4 boxMin;   // xyz: the cell's box in the tile frame

@@ -13,13 +13,15 @@ std::optional<Projection> projectionOf(const DatasetMetadata& metadata) {
     return std::move(projection).value();
 }
 
-Camera overviewCamera(const DatasetMetadata& metadata, double aspect) {
+Camera overviewCamera(const DatasetMetadata& metadata, double aspect, double exaggeration) {
     constexpr double kPitchDegrees = -40;
     const GroundRect ground = metadata.groundBounds();
-    const glm::dvec3 low{ground.west, ground.south, metadata.minHeight};
-    const glm::dvec3 high{ground.east, ground.north, metadata.maxHeight};
+    const glm::dvec3 low{ground.west, ground.south, exaggeration * metadata.minHeight};
+    const glm::dvec3 high{ground.east, ground.north, exaggeration * metadata.maxHeight};
 
-    return framing({.pitch = radiansFromDegrees(kPitchDegrees)}, low, high, aspect, 0.9);
+    Camera camera = framing({.pitch = radiansFromDegrees(kPitchDegrees)}, low, high, aspect, 0.9);
+    camera.position.z /= exaggeration;
+    return camera;
 }
 
 }  // namespace terray

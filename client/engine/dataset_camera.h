@@ -15,7 +15,7 @@ namespace terray {
 
 /// A camera that has the whole dataset in its picture: from the south, looking north and 40 degrees down, every corner
 /// of the box around ground and heights within the middle nine tenths of the picture.
-/// @param aspect  width of the picture by its height
-[[nodiscard]] Camera overviewCamera(const DatasetMetadata& metadata, double aspect);
+/// @param aspect  width of the picture by its height  @param exaggeration  that the picture is drawn with
+[[nodiscard]] Camera overviewCamera(const DatasetMetadata& metadata, double aspect, double exaggeration = 1);
 
 }  // namespace terray

@@ -185,7 +185,9 @@ void Engine::State::fillReport() {
 
 Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width,
                int height)
-    : state_(std::make_unique<State>(source, shaders, options, width, height)) {}
+    : state_(std::make_unique<State>(source, shaders, options, width, height)) {
+    setExaggeration(options.exaggeration);
+}
 
 Engine::~Engine() = default;
 
@@ -193,7 +195,7 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     const Clock::time_point start = Clock::now();
     State& state = *state_;
     state.report = {};
-    state.view = viewOf(camera, state.targets.width(), state.targets.height());
+    state.view = exaggerated(viewOf(camera, state.targets.width(), state.targets.height()), state.options.exaggeration);
     state.timer.enter(GpuPass::upload);
     state.resident.forgetBeyond(kMaxKnownTiles);
     if (waitForTiles) {
@@ -207,6 +209,12 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     state.report.frameMs = millisecondsSince(start) - state.report.waitMs;
     state.fillReport();
     return std::exchange(state.report, {});
+}
+
+void Engine::setExaggeration(double factor) {
+    TERRAY_CHECK_OP(factor, >=, kLeastExaggeration);
+    TERRAY_CHECK_OP(factor, <=, kGreatestExaggeration);
+    state_->options.exaggeration = factor;
 }
 
 const FrameTargets& Engine::targets() const {

@@ -29,6 +29,7 @@ struct EngineOptions {
     FeatureSet
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;
+    double exaggeration = 1;  ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
 };
 
 /// What a frame did. Times in milliseconds, sizes in bytes.
@@ -70,6 +71,10 @@ class Engine {
     /// wait no tile is uploaded twice, and a tile that failed is not asked for again.
     FrameReport drawFrame(const Camera& camera, bool waitForTiles);
 
+    /// From the next frame on heights, the camera's among them, are drawn multiplied by this. No tile is loaded anew;
+    /// selection refines for the larger errors.
+    void setExaggeration(double factor);
+
     [[nodiscard]] const FrameTargets& targets() const;
     /// The nodes of the last frame; node index plus 1 is what targets().readNodes() holds.
     [[nodiscard]] const std::vector<DrawNode>& nodes() const;
@@ -78,7 +83,7 @@ class Engine {
     /// How the launch was chosen; none unless Launch::automatic has drawn a frame.
     [[nodiscard]] const std::optional<TerrainRenderer::Calibration>& calibration() const;
 
-    /// World position of a hit: tile frame of the node to world, in double.
+    /// Where in the dataset a hit of the last frame lies, in double: metres, z a height, not exaggerated.
     [[nodiscard]] glm::dvec3 worldFromHit(const DrawNode& node, const glm::vec4& hit) const;
 
   private:

@@ -99,6 +99,7 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--occlusion", occlusion_, "on|off", "raster launch: the tile-ID pass ahead of the march (on)");
     line.option("--surface", surface_, "auto|columns|bilinear",
                 "between samples; auto: bilinear where a sample is larger than a pixel, else columns (auto)");
+    line.option("--exaggeration", exaggeration_, "FACTOR", "of all heights, the camera's among them, 0.01 to 100 (1)");
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
 }
@@ -108,6 +109,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--tolerance", tolerance_, 1e-3, kMostPixels);
     requireRange("--imagery-tolerance", imageryTolerance_, 1e-3, kMostPixels);
     requireRange("--anisotropy", anisotropy_, 1, 16);
+    requireRange("--exaggeration", exaggeration_, kLeastExaggeration, kGreatestExaggeration);
     requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
@@ -128,6 +130,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.gpuHeightBytes = gpuMemory_ - options.gpuImageryBytes;
     options.uploadBytesPerFrame = uploadBudget_;
     options.features.signalSky = signalSky_;
+    options.exaggeration = exaggeration_;
     return options;
 }
 
@@ -145,6 +148,7 @@ Json EngineCommandLine::toJson() const {
                         {"launch", launch_},
                         {"occlusion", occlusion_},
                         {"surface", surface_},
+                        {"exaggeration", exaggeration_},
                         {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};
 }

@@ -40,6 +40,7 @@ class EngineCommandLine {
     std::string launch_ = "auto";
     std::string occlusion_ = "on";
     std::string surface_ = "auto";
+    double exaggeration_ = EngineOptions().exaggeration;
     std::string shaders_;
     bool signalSky_ = false;
 };

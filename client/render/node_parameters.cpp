@@ -35,11 +35,13 @@ constexpr float kManyPixels = 1e6F;
 constexpr double kNearest = 1e-3;
 
 /// Distance from the eye to the farthest corner of a cell's box, metres.
-double farthestCorner(const DrawNode& node, const Tiling& tiling, const glm::dvec3& eye) {
+double farthestCorner(const DrawNode& node, const Tiling& tiling, const View& view) {
     const GroundRect ground = tiling.bounds(node.cell);
+    const glm::dvec3& eye = view.eye;
     const double x = std::max(std::abs(eye.x - ground.west), std::abs(eye.x - ground.east));
     const double y = std::max(std::abs(eye.y - ground.south), std::abs(eye.y - ground.north));
-    const double z = std::max(std::abs(eye.z - node.minHeight), std::abs(eye.z - node.maxHeight));
+    const double z = std::max(std::abs(eye.z - view.exaggeration * node.minHeight),
+                              std::abs(eye.z - view.exaggeration * node.maxHeight));
     return std::hypot(x, y, z);
 }
 
@@ -49,7 +51,8 @@ bool magnified(const DrawNode& node, const Tiling& tiling, const View& view) {
     const GroundRect ground = tiling.bounds(node.cell);
     const double x = std::max({ground.west - view.eye.x, view.eye.x - ground.east, 0.0});
     const double y = std::max({ground.south - view.eye.y, view.eye.y - ground.north, 0.0});
-    const double z = std::max({node.minHeight - view.eye.z, view.eye.z - node.maxHeight, 0.0});
+    const double z = std::max(
+        {view.exaggeration * node.minHeight - view.eye.z, view.eye.z - view.exaggeration * node.maxHeight, 0.0});
     return tiling.spacing(node.heightTile.level) * view.focalPixels() > std::hypot(x, y, z);
 }
 
@@ -90,17 +93,20 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     TERRAY_CHECK(node.heightTile.covers(node.cell));
     const ResidentHeights& heights = source.heights;
     const double spacing = tiling.spacing(node.heightTile.level);
-    const double step = heights.encoding.metresPerCode();
+    const double heightStep = heights.encoding.metresPerCode();
+    const double step = view.exaggeration * heightStep;
     const GroundRect ground = tiling.bounds(node.heightTile);
-    const auto codeOf = [&](double height) { return height / step - static_cast<double>(heights.encoding.offset); };
+    const auto codeOf = [&](double height) {
+        return height / heightStep - static_cast<double>(heights.encoding.offset);
+    };
     const auto tileDirection = [&](const glm::dvec3& world) {
         return glm::dvec3(world.x / spacing, -world.y / spacing, world.z / step);
     };
 
     interop::NodeParameters out;
     const glm::dvec3 eye((view.eye.x - ground.west) / spacing, (ground.north - view.eye.y) / spacing,
-                         codeOf(view.eye.z));
-    const double marginMetres = farthestCorner(node, tiling, view.eye) / view.focalPixels();
+                         codeOf(view.eye.z / view.exaggeration));
+    const double marginMetres = farthestCorner(node, tiling, view) / view.focalPixels();
     out.eye = withW(eye, spacing);
     out.right = withW(tileDirection(view.right * view.tanHalfWidth()), step);
     out.up = withW(tileDirection(view.up * view.tanHalfHeight), marginMetres);

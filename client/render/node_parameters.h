@@ -32,7 +32,7 @@ struct NodeSource {
 /// Conservative: every pixel whose ray meets the box lies inside, though most boxes cover only part of it.
 [[nodiscard]] glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view);
 
-/// World position (metres) of a point of a height tile's frame, in double.
+/// Place (metres, z a height, not exaggerated) of a point of a height tile's frame, in double.
 [[nodiscard]] glm::dvec3 worldFromTile(const TileId& heightTile, const HeightEncoding& encoding, const Tiling& tiling,
                                        const glm::dvec3& tilePoint);
 

@@ -68,6 +68,10 @@ class Traversal {
     void chooseHeights(Cell& cell, Metres distance);
     void chooseImagery(Cell& cell, Metres distance);
     std::optional<Cell> childOf(const Cell& cell, uint32_t quadrant) const;
+    /// Of a height error as it shows in an exaggerated picture.
+    [[nodiscard]] Pixels heightError(const HeightRecord& record, Metres distance) const {
+        return screenError(Metres(view_.exaggeration * record.error), distance, view_);
+    }
     [[nodiscard]] Pixels texelSide(uint32_t level, Metres distance) const {
         return screenError(Metres(tree_.tiling().spacing(level)), distance, view_);
     }
@@ -158,10 +162,10 @@ void Traversal::chooseHeights(Cell& cell, Metres distance) {
     Choice& choice = cell.heights;
     if (choice.settled) return;
     const auto& own = *tree_.heights(cell.id);
-    const Pixels standInError = screenError(Metres(tree_.heights(*choice.drawn)->record.error), distance, view_);
+    const Pixels standInError = heightError(tree_.heights(*choice.drawn)->record, distance);
     if (own.resident) choice.drawn = cell.id;
     const bool fineEnough = cell.id.level == tree_.finestHeightLevel() ||
-                            screenError(Metres(own.record.error), distance, view_) <= options_.tolerance * coarsening_;
+                            heightError(own.record, distance) <= options_.tolerance * coarsening_;
     const bool mustLoadFirst = !own.childrenKnown || cell.id.level - choice.drawn->level >= kMaxStandInLevels;
     if (!fineEnough && !mustLoadFirst) return;
     choice.settled = true;
@@ -192,7 +196,7 @@ Shown Traversal::emit(const Cell& cell, Metres distance) {
         .imageryTile = cell.imagery.drawn,
         .minHeight = bounds_.wallFoot(cell.ground),
         .maxHeight = std::min(double{source.maxHeight}, bounds_.top(cell.ground)),
-        .screenError = screenError(Metres(source.error), distance, view_).value(),
+        .screenError = heightError(source, distance).value(),
         .heightsExact = cell.heights.settled && cell.heights.exact,
         .imageryExact = cell.imagery.settled && cell.imagery.exact,
     };

@@ -31,6 +31,9 @@ namespace terray {
 // Over a curved earth (View::earth) frustum and distances are asked about boxes lowered by the drop, as they are seen.
 // Seen from above, rays still run straight, so the order of nodes is the same; and walls are about heights at one
 // place, so they reach as deep. A projected error is the same ratio of error to distance.
+//
+// Exaggerated (View::exaggeration), boxes and errors are multiplied when frustum and distances are asked; what the tree
+// knows, and what draw nodes say, stays in heights.
 
 struct SelectionOptions {
     Pixels tolerance{2.0 / 3.0};   ///< of the projected geometric error (paper 001, section 4)

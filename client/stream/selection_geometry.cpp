@@ -38,7 +38,7 @@ Box boxOf(const TileId& cell, const HeightRange& heights, const Tiling& tiling) 
 }
 
 Box seenBoxOf(const TileId& cell, const HeightRange& heights, const Tiling& tiling, const View& view) {
-    Box box = boxOf(cell, heights, tiling);
+    Box box = boxOf(cell, {view.exaggeration * heights.min, view.exaggeration * heights.max}, tiling);
     if (!view.earth) return box;
     const DropRange drop = dropOver(*view.earth, tiling.bounds(cell), glm::dvec2(view.eye));
     box.min.z -= drop.greatest;

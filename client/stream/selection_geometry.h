@@ -27,8 +27,8 @@ struct Box {
 
 /// The box over a cell's square.
 [[nodiscard]] Box boxOf(const TileId& cell, const HeightRange& heights, const Tiling& tiling);
-/// The same as straight lines of sight meet it: over a curved earth lowered, its top by the least drop and its bottom
-/// by the greatest, so that it holds every lowered point of the cell.
+/// The same as straight lines of sight meet it: exaggerated, and over a curved earth lowered, its top by the least drop
+/// and its bottom by the greatest, so that it holds every lowered point of the cell.
 [[nodiscard]] Box seenBoxOf(const TileId& cell, const HeightRange& heights, const Tiling& tiling, const View& view);
 /// From a point to the nearest point of a box; 0 inside.
 [[nodiscard]] Metres distanceTo(const Box& box, const glm::dvec3& point);

@@ -63,9 +63,10 @@ void requireWritable(const std::filesystem::path& path, bool force) {
     const OutputFile probe(path.string() + ".partial");  // removed again at once
 }
 
-Camera cameraOf(const ViewOptions& options, const DatasetMetadata& metadata) {
+Camera cameraOf(const ViewOptions& options, const DatasetMetadata& metadata, double exaggeration) {
     const std::optional<Projection> projection = projectionOf(metadata);
-    if (options.camera.empty()) return overviewCamera(metadata, static_cast<double>(options.width) / options.height);
+    const double aspect = static_cast<double>(options.width) / options.height;
+    if (options.camera.empty()) return overviewCamera(metadata, aspect, exaggeration);
     Result<Camera> camera = parseCamera(options.camera, projection ? &*projection : nullptr);
     if (!camera) throw Error(ExitCode::usage, "--camera: " + camera.failure().message);
     return *camera;
@@ -82,7 +83,7 @@ EngineOptions engineOptions(const ViewOptions& options, PictureKind kind, const 
     return engine;
 }
 
-MeasuredPicture measure(const Engine& engine) {
+MeasuredPicture measure(const Engine& engine, const Camera& camera) {
     const FrameTargets& targets = engine.targets();
     const Grid<glm::vec4> hits = targets.readHits();
     const Grid<uint32_t> nodes = targets.readNodes();
@@ -90,7 +91,7 @@ MeasuredPicture measure(const Engine& engine) {
     const GridSize size = hits.size();
     MeasuredPicture picture{.colour = targets.readLinear(),
                             .depthMetres = Grid<float>(size, std::numeric_limits<float>::infinity()),
-                            .positionOrigin = glm::floor(engine.view().eye),
+                            .positionOrigin = glm::floor(camera.position),
                             .position = Grid<glm::vec3>(size, glm::vec3(0)),
                             .normal = targets.readNormals(),
                             .nodeLevel = Grid<uint32_t>(size),
@@ -131,7 +132,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
 
     const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
     const EngineOptions chosen = engineOptions(options, kind, source->metadata());
-    const Camera camera = cameraOf(options, source->metadata());
+    const Camera camera = cameraOf(options, source->metadata(), chosen.exaggeration);
     requireWritable(out, options.force);
 
     const HeadlessContext context;
@@ -144,7 +145,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     if (kind == PictureKind::png) {
         writePng(out, engine.targets().readSrgb().view());
     } else {
-        writeExr(out, measure(engine));
+        writeExr(out, measure(engine, camera));
     }
     std::printf("%s: %d x %d pixels, %zu nodes from %zu height and %zu imagery tiles%s\n", out.c_str(), options.width,
                 options.height, report.nodes, report.residentHeights, report.residentImagery,

@@ -96,15 +96,16 @@ ComputedDataset::ComputedDataset(const HeightFunction& heights, GridSize size, d
     });
 }
 
-ComputedDataset::ComputedDataset(const HeightFunction& heights, GridSize size, double spacing) {
-    build(FunctionHeights(heights, size, spacing));
+ComputedDataset::ComputedDataset(const HeightFunction& heights, GridSize size, double spacing,
+                                 std::optional<double> quantum) {
+    build(FunctionHeights(heights, size, spacing), nullptr, quantum);
 }
 
 ComputedDataset::ComputedDataset(int64_t size, double spacing, uint64_t seed) {
     build(*makeSyntheticHeights({.size = size, .spacing = spacing, .seed = seed}));
 }
 
-void ComputedDataset::build(const HeightSource& heights, const OpenPhoto& openPhoto) {
+void ComputedDataset::build(const HeightSource& heights, const OpenPhoto& openPhoto, std::optional<double> quantum) {
     static std::atomic<int> counter = 0;
     parent_ = std::filesystem::path(testing::TempDir()) /
               ("terray_e2e_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
@@ -113,6 +114,7 @@ void ComputedDataset::build(const HeightSource& heights, const OpenPhoto& openPh
     BuildRequest request;
     request.out = directory_;
     request.jobs = 2;
+    request.quantum = quantum;
     (void)buildDataset(heights, openPhoto, request);
     source_ = openLocalDataset(directory_);
 }

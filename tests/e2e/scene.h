@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "client/engine/engine.h"
@@ -24,7 +25,8 @@ using PhotoFunction = std::function<Rgba(double x, double y)>;
 /// The grid's upper-left corner is at (1000, 5000), away from 0 so that a lost offset shows.
 class ComputedDataset {
   public:
-    ComputedDataset(const HeightFunction& heights, GridSize size, double spacing);
+    /// @param quantum  metres between stored heights; none: as the builder chooses
+    ComputedDataset(const HeightFunction& heights, GridSize size, double spacing, std::optional<double> quantum = {});
     /// With a photo, its finest level `photoLevel`, over all of the ground.
     ComputedDataset(const HeightFunction& heights, GridSize size, double spacing, const PhotoFunction& photo,
                     uint32_t photoLevel);
@@ -39,7 +41,7 @@ class ComputedDataset {
     [[nodiscard]] GroundRect ground() const { return source_->metadata().groundBounds(); }
 
   private:
-    void build(const HeightSource& heights, const OpenPhoto& openPhoto = nullptr);
+    void build(const HeightSource& heights, const OpenPhoto& openPhoto = nullptr, std::optional<double> quantum = {});
 
     std::filesystem::path parent_;
     std::filesystem::path directory_;

@@ -53,8 +53,11 @@ Comparison compare(const std::vector<DrawNode>& drawn, const View& view, const F
     for (int64_t y = 0; y < nodes.height(); ++y)
         for (int64_t x = 0; x < nodes.width(); ++x) {
             ++result.pixels;
-            const glm::dvec3 eye = view.eye;
-            const glm::dvec3 direction = view.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+            // The oracle works in heights. Its rays keep their t.
+            const glm::dvec3 inHeights(1, 1, 1 / view.exaggeration);
+            const glm::dvec3 eye = inHeights * view.eye;
+            const glm::dvec3 direction =
+                inHeights * view.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
             const uint32_t node = nodes.at(x, y);
             const double t = hits.at(x, y).w;
             const auto sure = oracle.meet(drawn, eye, direction, ColumnOracle::Columns::shrunk, floor);
@@ -151,6 +154,26 @@ TEST_F(Watertight, TwoHundredRandomCamerasUnderAStarvedBudgetShowNoHole) {
     EXPECT_GT(all.jumps, 1000) << "level jumps must be in view";
     RecordProperty("pixels", std::to_string(all.pixels));
     RecordProperty("jumps", std::to_string(all.jumps));
+}
+
+TEST_F(Watertight, ExaggeratedAndFlattenedGroundShowsNoHole) {
+    const ComputedDataset dataset(4096, 5, 43);
+    ColumnOracle oracle(dataset.source());
+    std::mt19937 random(2010);
+    Comparison all;
+    for (const double factor : {5.0, 0.3}) {
+        EngineOptions options = inspectedOptions(Surface::columns);
+        options.exaggeration = factor;
+        options.gpuHeightBytes = 8 * 720'000;
+        Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
+        for (int i = 0; i < 25; ++i) {
+            engine.drawFrame(randomCamera(random, oracle, dataset), true);
+            all += compare(engine, oracle);
+        }
+    }
+    expectClean(all);
+    EXPECT_GT(all.ground, all.pixels / 4);
+    EXPECT_GT(all.jumps, 300);
 }
 
 /// Blocks of 512 samples alternate between 0 and 900 m, so every tile border is a cliff; and rough inside.

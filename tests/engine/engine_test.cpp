@@ -221,13 +221,14 @@ TEST_F(EngineTest, HitsLieOnTheGroundInWorldCoordinates) {
 
 TEST_F(EngineTest, TheOverviewShowsTheWholeDataset) {
     for (const auto& [width, height] : {std::pair{160, 120}, std::pair{90, 160}}) {
-        const Camera camera = overviewCamera(heights_.metadata(), static_cast<double>(width) / height);
-        const View view = viewOf(camera, width, height);
+        const double exaggeration = width > height ? 1 : 20;
+        const Camera camera = overviewCamera(heights_.metadata(), static_cast<double>(width) / height, exaggeration);
+        const View view = exaggerated(viewOf(camera, width, height), exaggeration);
         const GroundRect ground = heights_.metadata().groundBounds();
         for (const double x : {ground.west, ground.east})
             for (const double y : {ground.south, ground.north})
                 for (const double z : {heights_.metadata().minHeight, heights_.metadata().maxHeight}) {
-                    const glm::dvec3 way = glm::dvec3{x, y, z} - view.eye;
+                    const glm::dvec3 way = glm::dvec3{x, y, exaggeration * z} - view.eye;
                     const double depth = glm::dot(way, view.forward);
                     EXPECT_GT(depth, 0);
                     EXPECT_LE(std::abs(glm::dot(way, view.right)), depth * view.tanHalfWidth());

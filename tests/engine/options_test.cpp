@@ -38,6 +38,7 @@ TEST(EngineOptions, DefaultsAreThoseOfTheLibrary) {
     EXPECT_EQ(options.pager.hostBudgetBytes, library.pager.hostBudgetBytes);
     EXPECT_EQ(options.render.anisotropy, library.render.anisotropy);
     EXPECT_TRUE(options.render.occlusion);
+    EXPECT_EQ(options.exaggeration, 1);
     EXPECT_EQ(options.render.photoFilter, PhotoFilter::automatic);
     // The default sun is printed with one decimal of a degree.
     const glm::dvec3 sun = glm::normalize(library.render.sunDirection);
@@ -73,6 +74,9 @@ TEST(EngineOptions, OutOfRangeIsAUsageError) {
                                                                        {"--anisotropy", "17"},
                                                                        {"--decode-threads", "-1"},
                                                                        {"--occlusion", "maybe"},
+                                                                       {"--exaggeration", "0"},
+                                                                       {"--exaggeration", "-2"},
+                                                                       {"--exaggeration", "101"},
                                                                        {"--photo-filter", "none"},
                                                                        {"--sun", "10"},
                                                                        {"--sun", "10,91"},

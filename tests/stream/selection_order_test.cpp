@@ -91,11 +91,12 @@ TEST(SelectionOrder, EveryVisiblePlaceIsCoveredByExactlyOneNode) {
     int visible = 0, overCurvedEarth = 0;
     for (int round = 0; round < 300; ++round) {
         const TileTree tree = randomTree(dataset, random);
-        const View view = overSomeEarth(randomView(dataset, random), random);
+        View view = overSomeEarth(randomView(dataset, random), random);
+        if (random.chance(0.5)) view = exaggerated(view, std::pow(10.0, random.uniform(-1, 1)));
         const auto nodes = select(tree, view, {}).nodes;
         for (int sample = 0; sample < 100; ++sample) {
             const glm::dvec2 place = randomPlace(dataset, random);
-            glm::dvec3 offset = glm::dvec3(place, groundHeight(dataset, place)) - view.eye;
+            glm::dvec3 offset = glm::dvec3(place, view.exaggeration * groundHeight(dataset, place)) - view.eye;
             if (view.earth) offset.z -= view.earth->drop(glm::dvec2(offset));
             const double depth = glm::dot(offset, view.forward);
             if (depth <= 0 || std::abs(glm::dot(offset, view.right)) > depth * view.tanHalfWidth() ||
