@@ -9,6 +9,7 @@ void main() {
     vec3 scale = vec3(node.eye.w, -node.eye.w, node.right.w);  // tile frame to metres east, north, up
     vec3 corner = vec3(gl_VertexID & 1, (gl_VertexID >> 1) & 1, gl_VertexID >> 2);
     vec3 fromEye = (mix(node.boxMin.xyz, node.boxMax.xyz, corner) - node.eye.xyz) * scale;
+    fromEye = seenCorner(node, fromEye, corner.z);
     fromEye += (2.0 * corner - 1.0) * sign(scale) * node.up.w;
     gl_Position = vec4(dot(fromEye, frame.right.xyz) * frame.viewScale.x, dot(fromEye, frame.up.xyz) * frame.viewScale.y,
                        frame.forward.w, dot(fromEye, frame.forward.xyz));

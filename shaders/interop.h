@@ -47,8 +47,8 @@ struct NodeParameters {
     vec4 right;    // xyz: half the picture's width at view depth 1 m, in the tile frame; w: metres per code, drawn
     vec4 up;       // xyz: half the picture's height at view depth 1 m, in the tile frame; w: raster margin, metres
     vec4 forward;  // xyz: the view axis, 1 m, in the tile frame
-    vec4 boxMin;   // xyz: the cell's box in the tile frame
-    vec4 boxMax;
+    vec4 boxMin;   // xyz: the cell's box in the tile frame; w: curved earth: what the seen box needs more, metres down
+    vec4 boxMax;   // likewise; w: metres up
     vec4 photo;  // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
     uvec4
         source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: start level, surface

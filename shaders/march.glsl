@@ -97,7 +97,7 @@ March marchNode(NodeParameters node, vec3 direction) {
             continue;
         }
 #endif
-        march.hit = aboveFloor(ray, contact, boxMin.z);
+        march.hit = true;
         march.t = contact;
         return march;
     }

@@ -2,6 +2,9 @@
 #ifndef TERRAY_NODES
 #define TERRAY_NODES
 #include "interop.h"
+#if TERRAY_CURVED
+#include "math/bend.glsl"
+#endif
 
 layout(std430, binding = TERRAY_BUFFER_NODES) readonly buffer NodeBuffer { NodeParameters nodes[]; };
 layout(std140, binding = TERRAY_BUFFER_FRAME) uniform FrameBuffer { FrameParameters frame; };
@@ -20,9 +23,25 @@ vec3 rayDirection(NodeParameters node, vec2 position) {
 // (design, section 5). direction: of the ray, tile frame.
 float rayBend(NodeParameters node, vec3 direction) {
     vec2 ground = vec2(direction.x, -direction.y) * node.eye.w;  // metres east and north
-    return (frame.bend.x * ground.x * ground.x + frame.bend.y * ground.x * ground.y +
-            frame.bend.z * ground.y * ground.y) / node.right.w;
+    return earthDrop(frame.bend.xyz, ground.x, ground.y) / node.right.w;
 }
+
+// A corner of a node's box, in metres east, north and up of the eye, as straight lines of sight see it. up: 1 at the box's
+// top, 0 at its bottom.
+vec3 seenCorner(NodeParameters node, vec3 fromEye, float up) {
+    float bulge = up > 0.0 ? node.boxMax.w : -node.boxMin.w;
+    return vec3(fromEye.xy, fromEye.z - earthDrop(frame.bend.xyz, fromEye.x, fromEye.y) + bulge);
+}
+
+// The slope of a surface, codes per texel, as straight lines of sight see it at a point of the tile frame.
+vec2 seenSlope(NodeParameters node, vec2 texel, vec2 slope) {
+    vec2 ground = vec2(texel.x - node.eye.x, node.eye.y - texel.y) * node.eye.w;
+    vec2 fall = earthFall(frame.bend.xyz, ground.x, ground.y);
+    return slope - vec2(fall.x, -fall.y) * (node.eye.w / node.right.w);
+}
+#else
+vec3 seenCorner(NodeParameters node, vec3 fromEye, float up) { return fromEye; }
+vec2 seenSlope(NodeParameters node, vec2 texel, vec2 slope) { return slope; }
 #endif
 
 // Where a ray is at view depth t: tile frame.

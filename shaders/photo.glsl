@@ -35,7 +35,7 @@ vec3 filteredPhoto(vec3 place, vec2 alongX, vec2 alongY) {
 vec3 filteredPhoto(vec3 place, vec2 alongX, vec2 alongY) { return textureGrad(photos, place, alongX, alongY).rgb; }
 #endif
 
-// slope: gradient of the surface, codes per texel. t: view depth, metres. position: on the picture, -1 .. 1.
+// slope: gradient of the surface as seen from the eye (seenSlope), codes per texel. t: view depth, metres. position: on the picture, -1 .. 1.
 vec3 groundColour(NodeParameters node, vec2 texel, vec2 slope, float t, vec2 position) {
     if (node.source.y == TERRAY_NO_SLOT) return frame.ground.rgb;
 

@@ -39,27 +39,35 @@ Ray mirroredRay(NodeParameters node, vec3 direction) {
 
 #if TERRAY_CURVED
 
-// The part of a ray over a box. A bent ray is not cut at top and bottom: the pyramid's own top takes care of the one,
-// aboveFloor of the other.
+// Of a ray above a level, from t = enter on.
+Clearance clearanceOver(Ray ray, float level, float enter) {
+    Clearance clearance;
+    clearance.bend = ray.bend;
+    clearance.slope = bentSlope(ray.direction.z, ray.bend, enter);
+    clearance.start = bentHeight(ray.eye.z, ray.direction.z, ray.bend, enter) - level;
+    return clearance;
+}
+
+// The part of a ray over a box and not below it. A ray that sinks through the bottom and rises again within the box keeps
+// only the part before: it passed the ground, or a hole in it. It is not cut at the top: the pyramid takes care of that.
 Interval clippedRay(Ray ray, vec3 boxMin, vec3 boxMax) {
     float everywhere = 1e30;
-    return boxInterval(vec3(ray.eye.xy, 0.0), vec3(ray.inverse.xy, 1.0), vec3(boxMin.xy, -everywhere),
-                       vec3(boxMax.xy, everywhere));
+    Interval span = boxInterval(vec3(ray.eye.xy, 0.0), vec3(ray.inverse.xy, 1.0), vec3(boxMin.xy, -everywhere),
+                                vec3(boxMax.xy, everywhere));
+    Clearance clearance = clearanceOver(ray, boxMin.z, span.enter);
+    if (clearance.start < 0.0) {
+        span.enter += riseTime(clearance);
+    } else {
+        float sinks = firstContact(clearance, span.exit - span.enter);
+        if (sinks >= 0.0) span.exit = min(span.exit, span.enter + sinks);
+    }
+    return span;
 }
 
 // t at which the ray is first at or below `top` within [enter, leave], or kNoContact.
 float blockContact(Ray ray, float top, float enter, float leave) {
-    Clearance clearance;
-    clearance.bend = ray.bend;
-    clearance.slope = bentSlope(ray.direction.z, ray.bend, enter);
-    clearance.start = bentHeight(ray.eye.z, ray.direction.z, ray.bend, enter) - top;
-    float s = firstContact(clearance, leave - enter);
+    float s = firstContact(clearanceOver(ray, top, enter), leave - enter);
     return s < 0.0 ? kNoContact : min(enter + s, leave);
-}
-
-// Whether a contact belongs to the ground and not to what is below a node's box.
-bool aboveFloor(Ray ray, float t, float bottom) {
-    return bentHeight(ray.eye.z, ray.direction.z, ray.bend, t) >= bottom;
 }
 
 #else
@@ -70,8 +78,6 @@ float blockContact(Ray ray, float top, float enter, float leave) {
     if (!meetsColumn(top, ray.eye.z, ray.direction.z, enter, leave)) return kNoContact;
     return columnTime(top, ray.eye.z, ray.direction.z, ray.inverse.z, enter, leave);
 }
-
-bool aboveFloor(Ray ray, float t, float bottom) { return true; }
 
 #endif
 

@@ -29,7 +29,7 @@ Resolved resolvePixel(ivec2 pixel) {
         vec2 slope = smoothGradient(hit.xy, node.source.x, hit.z);
         vec2 rise = slope * (node.right.w / node.eye.w);  // metres per metre to the east and to the south
         resolved.normal = normalize(vec3(-rise.x, rise.y, 1.0));
-        vec3 ground = groundColour(node, hit.xy, slope, hit.w, position);
+        vec3 ground = groundColour(node, hit.xy, seenSlope(node, hit.xy, slope), hit.w, position);
         resolved.colour = lit(ground, resolved.normal, frame.sun.xyz);
     }
     resolved.colour = storedColour(resolved.colour, pixel);

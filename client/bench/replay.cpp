@@ -116,6 +116,7 @@ class Replay {
     [[nodiscard]] Json summary() const {
         return Json::Object{{"frames", uint64_t{frames_}},
                             {"launch", launch()},
+                            {"earth", engine_.earth().description()},
                             {"wallSeconds", wallSeconds_},
                             {"peakResidentBytes", peakResidentBytes()},
                             {"warmUp", Json::Object{{"frames", options_.warmUpFrames},
@@ -195,7 +196,7 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
     if (launch.find("rasterMs") != nullptr)
         std::printf(" (calibration: raster %.1f ms, compute %.1f ms a frame)", launch.numberAt("rasterMs").value(),
                     launch.numberAt("computeMs").value());
-    std::printf("\n");
+    std::printf("\nearth: %s\n", replay.summary().stringAt("earth").value().c_str());
     if (statistics)
         std::printf("steps a ray: mean %.1f, at most %.0f; rays out of steps: %.0f\n", table.median("steps_mean"),
                     table.max("steps_max"), table.sum("rays_out_of_steps"));

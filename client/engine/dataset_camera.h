@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "client/engine/earth.h"
 #include "client/stream/camera.h"
 #include "common/dataset_metadata.h"
 #include "common/projection.h"
@@ -14,8 +15,9 @@ namespace terray {
 [[nodiscard]] std::optional<Projection> projectionOf(const DatasetMetadata& metadata);
 
 /// A camera that has the whole dataset in its picture: from the south, looking north and 40 degrees down, every corner
-/// of the box around ground and heights within the middle nine tenths of the picture.
+/// of the box around ground and heights, as it is seen, within the middle nine tenths of the picture.
 /// @param aspect  width of the picture by its height  @param exaggeration  that the picture is drawn with
-[[nodiscard]] Camera overviewCamera(const DatasetMetadata& metadata, double aspect, double exaggeration = 1);
+[[nodiscard]] Camera overviewCamera(const DatasetMetadata& metadata, double aspect, const EarthModel& earth,
+                                    double exaggeration = 1);
 
 }  // namespace terray

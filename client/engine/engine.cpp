@@ -51,6 +51,8 @@ GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& optio
 struct Engine::State {
     State(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& given, int width, int height)
         : options(settled(given, source)),
+          earth(source.metadata(), options.earth, options.selection.tolerance.value(),
+                viewOf(Camera(), width, height).focalPixels()),
           resident(source, shaders, slotOptions(source, options), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
           targets(width, height, options.features, options.colour),
@@ -74,6 +76,7 @@ struct Engine::State {
     void fillReport();
 
     EngineOptions options;
+    EarthModel earth;
     ResidentTiles resident;
     TerrainRenderer renderer;
     FrameTargets targets;
@@ -195,7 +198,9 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     const Clock::time_point start = Clock::now();
     State& state = *state_;
     state.report = {};
-    state.view = exaggerated(viewOf(camera, state.targets.width(), state.targets.height()), state.options.exaggeration);
+    View view = viewOf(camera, state.targets.width(), state.targets.height());
+    view.earth = state.earth.at(camera.position);
+    state.view = exaggerated(view, state.options.exaggeration);
     state.timer.enter(GpuPass::upload);
     state.resident.forgetBeyond(kMaxKnownTiles);
     if (waitForTiles) {
@@ -227,6 +232,10 @@ const std::vector<DrawNode>& Engine::nodes() const {
 
 const View& Engine::view() const {
     return state_->view;
+}
+
+const EarthModel& Engine::earth() const {
+    return state_->earth;
 }
 
 const GpuTiles& Engine::tiles() const {

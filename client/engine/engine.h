@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/engine/earth.h"
 #include "client/render/frame_targets.h"
 #include "client/render/gpu_tiles.h"
 #include "client/render/gpu_timer.h"
@@ -23,6 +24,7 @@ struct EngineOptions {
     SelectionOptions selection;
     RenderOptions render;
     PagerOptions pager;
+    EarthOptions earth;
     uint64_t gpuHeightBytes = 256ull << 20;
     uint64_t gpuImageryBytes = 256ull << 20;
     uint64_t uploadBytesPerFrame = 16ull << 20;  ///< at least one tile is uploaded however small it is
@@ -80,6 +82,8 @@ class Engine {
     [[nodiscard]] const std::vector<DrawNode>& nodes() const;
     [[nodiscard]] const View& view() const;
     [[nodiscard]] const GpuTiles& tiles() const;
+    /// Over what the dataset is drawn: decided at construction, for pictures of 45 degrees.
+    [[nodiscard]] const EarthModel& earth() const;
     /// How the launch was chosen; none unless Launch::automatic has drawn a frame.
     [[nodiscard]] const std::optional<TerrainRenderer::Calibration>& calibration() const;
 

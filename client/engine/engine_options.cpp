@@ -80,6 +80,13 @@ Surface surfaceNamed(const std::string& name) {
     refuse("--surface", name, "auto, columns or bilinear");
 }
 
+EarthShape earthShapeNamed(const std::string& name) {
+    if (name == "auto") return EarthShape::automatic;
+    if (name == "flat") return EarthShape::flat;
+    if (name == "curved") return EarthShape::curved;
+    refuse("--earth", name, "auto, flat or curved");
+}
+
 void EngineCommandLine::declare(CommandLine& line) {
     sun_ = degreesOf(RenderOptions().sunDirection);
     line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
@@ -100,6 +107,11 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--surface", surface_, "auto|columns|bilinear",
                 "between samples; auto: bilinear where a sample is larger than a pixel, else columns (auto)");
     line.option("--exaggeration", exaggeration_, "FACTOR", "of all heights, the camera's among them, 0.01 to 100 (1)");
+    line.option("--earth", earth_, "auto|flat|curved",
+                "auto: curved where that moves ground by more than --tolerance across the dataset: beyond about "
+                "11 km at 720 rows, and only with a coordinate system (auto)");
+    line.option("--refraction", refraction_, "K",
+                "by which part of the earth's curvature air bends light, -5 to 0.99; 0: none (0.13)");
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
 }
@@ -111,6 +123,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--anisotropy", anisotropy_, 1, 16);
     requireRange("--exaggeration", exaggeration_, kLeastExaggeration, kGreatestExaggeration);
     requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
+    requireRange("--refraction", refraction_, -5, 0.99);
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
 
@@ -124,6 +137,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.render.launch = launchNamed(launch_);
     options.render.occlusion = occlusion_ == "on";
     options.render.surface = surfaceNamed(surface_);
+    options.earth = {.shape = earthShapeNamed(earth_), .refraction = refraction_};
     options.pager.hostBudgetBytes = hostMemory_;
     options.pager.decodeThreads = static_cast<int>(decodeThreads_);
     options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;
@@ -149,6 +163,8 @@ Json EngineCommandLine::toJson() const {
                         {"occlusion", occlusion_},
                         {"surface", surface_},
                         {"exaggeration", exaggeration_},
+                        {"earth", earth_},
+                        {"refraction", refraction_},
                         {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};
 }

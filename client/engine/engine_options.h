@@ -41,6 +41,8 @@ class EngineCommandLine {
     std::string occlusion_ = "on";
     std::string surface_ = "auto";
     double exaggeration_ = EngineOptions().exaggeration;
+    std::string earth_ = "auto";
+    double refraction_ = EarthOptions().refraction;
     std::string shaders_;
     bool signalSky_ = false;
 };
@@ -54,6 +56,9 @@ class EngineCommandLine {
 
 /// The launch that "auto", "raster" or "compute" names. Throws Error(usage) on anything else.
 [[nodiscard]] Launch launchNamed(const std::string& name);
+
+/// The shape of the earth that "auto", "flat" or "curved" names. Throws Error(usage) on anything else.
+[[nodiscard]] EarthShape earthShapeNamed(const std::string& name);
 
 /// The surface that "auto", "columns" or "bilinear" names. Throws Error(usage) on anything else.
 [[nodiscard]] Surface surfaceNamed(const std::string& name);

@@ -11,7 +11,8 @@ FeatureSet FeatureSet::resolving() const {
             .normals = normals,
             .signalSky = signalSky,
             .linearColour = linearColour,
-            .photoProbes = imagery && photoProbes};
+            .photoProbes = imagery && photoProbes,
+            .curved = imagery && curved};
 }
 
 ShaderDefines FeatureSet::defines() const {

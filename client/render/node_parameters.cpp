@@ -34,15 +34,30 @@ constexpr float kManyPixels = 1e6F;
 /// View depth in metres at which boxes around the eye are cut off, so that they have a projection.
 constexpr double kNearest = 1e-3;
 
-/// Distance from the eye to the farthest corner of a cell's box, metres.
+/// Distance from the eye to the farthest corner of a cell's box as it is seen, metres.
 double farthestCorner(const DrawNode& node, const Tiling& tiling, const View& view) {
     const GroundRect ground = tiling.bounds(node.cell);
     const glm::dvec3& eye = view.eye;
     const double x = std::max(std::abs(eye.x - ground.west), std::abs(eye.x - ground.east));
     const double y = std::max(std::abs(eye.y - ground.south), std::abs(eye.y - ground.north));
-    const double z = std::max(std::abs(eye.z - view.exaggeration * node.minHeight),
-                              std::abs(eye.z - view.exaggeration * node.maxHeight));
+    const double drop = view.earth ? dropOver(*view.earth, ground, glm::dvec2(eye)).greatest : 0;
+    const double z = std::max(std::abs(eye.z - view.exaggeration * node.minHeight + drop),
+                              std::abs(eye.z - view.exaggeration * node.maxHeight + drop));
     return std::hypot(x, y, z);
+}
+
+/// What a box needs more, in metres, when only its corners are lowered by the drop at their place.
+struct Bulge {
+    double down = 0;
+    double up = 0;
+};
+
+/// The drop is a quadratic and the earth convex: over a square of side s the lowered top rises above the bilinear
+/// surface through its corners by up to (xx + yy) s^2 / 4, and the two triangles that are drawn lie up to |xy| s^2 / 4
+/// off that surface, up or down.
+Bulge bulgeOver(const EarthCurvature& earth, double side) {
+    const double down = std::abs(earth.xy) * side * side / 4;
+    return {.down = down, .up = (earth.xx + earth.yy) * side * side / 4 + down};
 }
 
 }  // namespace
@@ -63,7 +78,11 @@ glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
         const glm::dvec3 corner((i & 1) != 0 ? node.boxMax.x : node.boxMin.x,
                                 (i & 2) != 0 ? node.boxMax.y : node.boxMin.y,
                                 (i & 4) != 0 ? node.boxMax.z : node.boxMin.z);
-        const glm::dvec3 fromEye = (corner - glm::dvec3(node.eye)) * scale;
+        glm::dvec3 fromEye = (corner - glm::dvec3(node.eye)) * scale;
+        if (view.earth) {
+            fromEye.z -= view.earth->drop(fromEye.x, fromEye.y);
+            fromEye.z += (i & 4) != 0 ? node.boxMax.w : -node.boxMin.w;
+        }
         corners[i] = {glm::dot(fromEye, view.right), glm::dot(fromEye, view.up), glm::dot(fromEye, view.forward)};
     }
     glm::dvec2 least(kUnbounded), greatest(-kUnbounded);
@@ -114,10 +133,11 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
 
     // Half a code above and below, so that rounding the bounds to float cuts off no surface.
     const SubSquare cell = subSquare(node.cell, node.heightTile);
-    out.boxMin = withW({cell.corner, codeOf(node.minHeight) - 0.5}, 0);
+    const Bulge bulge = view.earth ? bulgeOver(*view.earth, tiling.tileSide(node.cell.level)) : Bulge();
+    out.boxMin = withW({cell.corner, codeOf(node.minHeight) - 0.5}, bulge.down);
     const double top =
         source.bilinear ? heights.maxima.over(cell.corner.x, cell.corner.y, cell.side) : codeOf(node.maxHeight);
-    out.boxMax = withW({cell.corner + cell.side, top + 0.5}, 0);
+    out.boxMax = withW({cell.corner + cell.side, top + 0.5}, bulge.up);
 
     if (node.imageryTile && source.photoSlot != TERRAY_NO_SLOT) {
         // Both tiles contain the cell, so one contains the other: photo texels = offset + scale * height texels.

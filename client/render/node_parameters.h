@@ -27,9 +27,10 @@ struct NodeSource {
 /// would show as steps, and the surface is drawn bilinear.
 [[nodiscard]] bool magnified(const DrawNode& node, const Tiling& tiling, const View& view);
 
-/// The pixels that a node's box covers, as least x, least y, greatest x, greatest y, counted like gl_FragCoord (y from
-/// the bottom, centres at + 0.5), widened by one pixel; least > greatest when the box lies behind the eye.
-/// Conservative: every pixel whose ray meets the box lies inside, though most boxes cover only part of it.
+/// The pixels that a node's box covers as it is seen (over a curved earth, lowered), as least x, least y, greatest x,
+/// greatest y, counted like gl_FragCoord (y from the bottom, centres at + 0.5), widened by one pixel; least > greatest
+/// when the box lies behind the eye. Conservative: every pixel whose ray meets the box lies inside, though most boxes
+/// cover only part of it.
 [[nodiscard]] glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view);
 
 /// Place (metres, z a height, not exaggerated) of a point of a height tile's frame, in double.

@@ -30,7 +30,8 @@ interop::FrameParameters frameParameters(const View& view, const RenderOptions& 
     out.viewScale = glm::vec4(1 / (wide * wide), 1 / (view.tanHalfHeight * view.tanHalfHeight), options.anisotropy, 0);
     out.ground = glm::vec4(linearFromSrgb(kNeutralGround[0]), linearFromSrgb(kNeutralGround[1]),
                            linearFromSrgb(kNeutralGround[2]), 1);
-    out.bend = pack(options.bend.value_or(glm::dvec3(0)), 0);
+    const EarthCurvature earth = view.earth.value_or(EarthCurvature());
+    out.bend = pack({earth.xx, earth.xy, earth.yy}, 0);
     return out;
 }
 
@@ -163,7 +164,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     features.photoProbes = features.imagery && options.photoFilter != PhotoFilter::hardware &&
                            (options.photoFilter == PhotoFilter::probes || softwareRasteriser_);
     features.bilinear = bilinearNodes_ > 0;
-    features.curved = options.bend.has_value();
+    features.curved = view.earth.has_value();
     glViewport(0, 0, view.width, view.height);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 

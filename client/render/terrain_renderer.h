@@ -49,9 +49,6 @@ struct RenderOptions {
     Launch launch = Launch::raster;
     bool occlusion = true;  ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
-    /// Curved earth: a ray's height over the flat map gains x dx^2 + y dx dy + z dy^2, for dx metres to the east and dy
-    /// to the north of the eye, x, y, z in 1/metre. None: flat.
-    std::optional<glm::dvec3> bend;
 };
 
 /// Draws lists of nodes by ray casting (paper 001, section 3): a march of each pixel's ray through the nodes, front to

@@ -63,10 +63,10 @@ void requireWritable(const std::filesystem::path& path, bool force) {
     const OutputFile probe(path.string() + ".partial");  // removed again at once
 }
 
-Camera cameraOf(const ViewOptions& options, const DatasetMetadata& metadata, double exaggeration) {
+/// The camera that was given, if one was.
+std::optional<Camera> cameraOf(const ViewOptions& options, const DatasetMetadata& metadata) {
     const std::optional<Projection> projection = projectionOf(metadata);
-    const double aspect = static_cast<double>(options.width) / options.height;
-    if (options.camera.empty()) return overviewCamera(metadata, aspect, exaggeration);
+    if (options.camera.empty()) return {};
     Result<Camera> camera = parseCamera(options.camera, projection ? &*projection : nullptr);
     if (!camera) throw Error(ExitCode::usage, "--camera: " + camera.failure().message);
     return *camera;
@@ -132,13 +132,16 @@ ExitCode runView(const std::vector<std::string>& arguments) {
 
     const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
     const EngineOptions chosen = engineOptions(options, kind, source->metadata());
-    const Camera camera = cameraOf(options, source->metadata(), chosen.exaggeration);
+    const std::optional<Camera> given = cameraOf(options, source->metadata());
     requireWritable(out, options.force);
 
     const HeadlessContext context;
     requireRendererFeatures();
     const ShaderLibrary shaders = options.engine.shaders();
     Engine engine(*source, shaders, chosen, options.width, options.height);
+    const double aspect = static_cast<double>(options.width) / options.height;
+    const Camera camera =
+        given ? *given : overviewCamera(source->metadata(), aspect, engine.earth(), chosen.exaggeration);
     const FrameReport report = engine.drawFrame(camera, true);
     refuseFailures(report);
     throwIfInterrupted();
@@ -150,6 +153,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     std::printf("%s: %d x %d pixels, %zu nodes from %zu height and %zu imagery tiles%s\n", out.c_str(), options.width,
                 options.height, report.nodes, report.residentHeights, report.residentImagery,
                 report.wanted > 0 ? ", coarser than asked: the GPU memory budget is too small" : "");
+    std::printf("earth: %s\n", engine.earth().description().c_str());
     return ExitCode::ok;
 }
 

@@ -40,4 +40,14 @@ MATH_FUNCTION real firstContact(Clearance clearance, real span) {
     return max(REAL(0.0), min(s, span));
 }
 
+// When a ray that starts below (start < 0) and bends up (bend >= 0, not level with bend 0) comes up through the surface; beyond any
+// span if never.
+MATH_FUNCTION real riseTime(Clearance clearance) {
+    real root = sqrt(clearance.slope * clearance.slope - REAL(4.0) * clearance.bend * clearance.start);
+    real tiny = REAL(1e-37);
+    return clearance.slope > REAL(0.0)
+               ? -REAL(2.0) * clearance.start / (root + clearance.slope)
+               : (root - clearance.slope) / max(REAL(2.0) * clearance.bend, tiny);
+}
+
 #endif

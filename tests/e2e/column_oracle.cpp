@@ -29,6 +29,26 @@ void clip(Span& span, double start, double slope, double low, double high) {
     span.to = std::min(span.to, std::max(a, b));
 }
 
+/// The same for the first part of start + t * slope + t^2 * bend that lies between low and high; bend >= 0.
+void clipBent(Span& span, double start, double slope, double bend, glm::dvec2 range) {
+    if (bend == 0) return clip(span, start, slope, range.x, range.y);
+    /// The times at which the parabola passes a height; not numbers when it stays above.
+    const auto passes = [&](double height) {
+        const double root = std::sqrt(slope * slope - 4 * bend * (start - height));
+        const double far = slope < 0 ? root - slope : -root - slope;  // no digits cancel
+        const double a = far / (2 * bend), b = 2 * (start - height) / far;
+        return glm::dvec2(std::min(a, b), std::max(a, b));
+    };
+    const glm::dvec2 high = passes(range.y), low = passes(range.x);
+    if (std::isnan(high.x)) {
+        span.to = -1;
+        return;
+    }
+    span.from = std::max(span.from, high.x);
+    span.to = std::min(span.to, high.y);
+    if (!std::isnan(low.x) && low.y > 0) span.to = std::min(span.to, low.x);
+}
+
 glm::dvec3 centreOf(const GroundRect& ground) {
     return {(ground.west + ground.east) / 2, (ground.south + ground.north) / 2, 0};
 }
@@ -55,7 +75,7 @@ std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ra
     const double metresPerT = glm::length(ray.direction);
     const auto changeAt = [&](double t) { return ray.sign * (0.01 + 0x1p-20 * t * metresPerT); };
     Span span;
-    clip(span, ray.eye.z, ray.direction.z, ray.floor, node.maxHeight + 1);
+    clipBent(span, ray.eye.z, ray.direction.z, ray.bend, {ray.floor, node.maxHeight + 1});
     const double widest =
         ray.sign < 0 ? 0
                      : 0.01 + 0x1p-20 * std::hypot(glm::distance(ray.eye, centreOf(ground)), ground.east - ground.west);
@@ -80,7 +100,7 @@ std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ra
         const uint16_t code = tile.codes.at(column + kHeightApron, row + kHeightApron);
         if (code == kNoSurface) return {};
         Span inside = throughCell(column, row, change / spacing);
-        clip(inside, ray.eye.z, ray.direction.z, ray.floor, tile.encoding.height(code) + change);
+        clipBent(inside, ray.eye.z, ray.direction.z, ray.bend, {ray.floor, tile.encoding.height(code) + change});
         return inside.from <= inside.to ? std::optional(inside.from) : std::nullopt;
     };
     const int64_t beside = ray.sign > 0 ? 1 : 0;  // grown columns reach into their neighbours
@@ -101,11 +121,18 @@ std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ra
     return first;
 }
 
-std::optional<double> ColumnOracle::meet(const std::vector<DrawNode>& nodes, const glm::dvec3& eye,
+std::optional<double> ColumnOracle::meet(const std::vector<DrawNode>& nodes, const View& view,
                                          const glm::dvec3& direction, Columns columns, double floor) {
     std::optional<double> first;
+    // The oracle works in heights. Its rays keep their t.
+    const View heights = exaggerated(view, 1 / view.exaggeration);
+    const Ray ray{.eye = heights.eye,
+                  .direction = {direction.x, direction.y, direction.z / view.exaggeration},
+                  .bend = heights.earth ? heights.earth->drop(direction.x, direction.y) : 0,
+                  .sign = columns == Columns::shrunk ? -1.0 : 1.0,
+                  .floor = floor};
     for (const DrawNode& node : nodes) {
-        const auto t = meetNode(node, {eye, direction, columns == Columns::shrunk ? -1.0 : 1.0, floor});
+        const auto t = meetNode(node, ray);
         if (t && (!first || *t < *first)) first = t;
     }
     return first;

@@ -8,6 +8,7 @@
 
 #include "client/stream/dataset_source.h"
 #include "common/draw_node.h"
+#include "common/view.h"
 
 namespace terray {
 
@@ -23,9 +24,11 @@ class ColumnOracle {
         shrunk,  ///< a ray that meets one certainly meets the ground
         grown,   ///< a ray that meets none certainly clears it
     };
-    /// View depth at which a ray first meets a column. Each is smaller (or larger) by 1 cm + 2^-20 of the distance on
-    /// its top and its four sides, and reaches down to `floor` (metres). Directions as View::direction gives them.
-    [[nodiscard]] std::optional<double> meet(const std::vector<DrawNode>& nodes, const glm::dvec3& eye,
+    /// View depth at which a ray of a picture, straight or bent (View::earth), first meets a column. Each is smaller
+    /// (or larger) by 1 cm + 2^-20 of the distance on its top and its four sides, and reaches down to `floor` (metres);
+    /// what a bent ray meets when it comes up again from below that does not count. Directions as View::direction gives
+    /// them.
+    [[nodiscard]] std::optional<double> meet(const std::vector<DrawNode>& nodes, const View& view,
                                              const glm::dvec3& direction, Columns columns, double floor);
 
     [[nodiscard]] const TileSource& source() const { return source_; }
@@ -36,6 +39,7 @@ class ColumnOracle {
     struct Ray {
         glm::dvec3 eye;
         glm::dvec3 direction;
+        double bend;  ///< metres of height gained per squared unit of t
         double sign;  ///< of the change: -1 shrunk, 1 grown
         double floor;
     };

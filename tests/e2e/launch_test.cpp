@@ -59,6 +59,20 @@ TEST_F(LaunchTest, BothDrawTheSamePictureOnEverySurface) {
     }
 }
 
+TEST_F(LaunchTest, BothDrawTheSamePictureOverASmallEarth) {
+    const ComputedDataset dataset(2048, 5, 21);
+    EngineOptions options = inspectedOptions();
+    options.earth = {.shape = EarthShape::curved, .refraction = -200};  // 32 km in radius to the eye
+    const auto raster = engineWith(dataset.source(), Launch::raster, options);
+    const auto compute = engineWith(dataset.source(), Launch::compute, options);
+    const glm::dvec3 middle(1000 + 5120, 5000 - 5120, dataset.source().metadata().maxHeight);
+    int64_t ground = 0;
+    for (const double pitch : {-90.0, -40.0, -12.0})
+        for (const double height : {-400.0, 50.0, 3000.0})
+            ground += expectSame(*raster, *compute, cameraAt(middle + glm::dvec3(0, 0, height), 30, pitch, 60));
+    EXPECT_GT(ground, 10'000);
+}
+
 TEST_F(LaunchTest, BothDrawTheSamePictureWithoutTheIdPass) {
     const ComputedDataset dataset(1024, 5, 22);
     EngineOptions options = inspectedOptions();

@@ -153,6 +153,42 @@ TEST_F(Photo, EdgesLieWithinHalfATexelOnEveryLevel) {
     EXPECT_GT(levels.front(), levels.back()) << "several levels must be seen";
 }
 
+TEST_F(Photo, OverACurvedEarthFootprintsGrowTowardsItsHorizon) {
+    // Stripes of 10 m across the view, on an earth that is 32 km in radius to the eye: its horizon is 8 km away. There
+    // the ground is seen edge-on although rays leave the eye at 14 degrees: filtered for those the stripes would show.
+    constexpr double kPeriod = 20;
+    const auto stripes = [](double, double y) {
+        const auto grey = static_cast<uint8_t>(std::fmod(y + 1e6, kPeriod) < kPeriod / 2 ? 220 : 40);
+        return Rgba{grey, grey, grey, 255};
+    };
+    const ComputedDataset dataset(flat, {1024, 1024}, 20, stripes, 3);
+    EngineOptions options = inspectedOptions();
+    options.colour = ColourFormat::linearFloat;
+    options.earth = {.shape = EarthShape::curved, .refraction = -200};
+    Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
+    engine.drawFrame(cameraAt({11000, 5000 - 15000, 1100}, 0, -14.8, 4), true);
+    const auto colours = engine.targets().readLinear();
+    const auto hits = engine.targets().readHits();
+    const auto nodes = engine.targets().readNodes();
+    const View& view = engine.view();
+    double sum = 0, squares = 0, count = 0;
+    for (int64_t y = 0; y < kHeight; ++y)
+        for (int64_t x = 0; x < kWidth; ++x) {
+            if (nodes.at(x, y) == 0) continue;
+            // The angle at which the bent ray meets the level ground, and the footprint that makes.
+            const glm::dvec3 ray = view.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+            const double t = hits.at(x, y).w;
+            const double grazing = -(ray.z + 2 * view.earth->drop(ray.x, ray.y) * t) / std::hypot(ray.x, ray.y);
+            if (t / view.focalPixels() / grazing < 2 * kPeriod) continue;
+            sum += colours.at(x, y).g;
+            squares += std::pow(colours.at(x, y).g, 2);
+            ++count;
+        }
+    ASSERT_GT(count, 3000);
+    const double mean = sum / count;
+    EXPECT_LT(std::sqrt(squares / count - mean * mean), 0.1 * mean) << "unfiltered it is the mean";
+}
+
 TEST_F(Photo, ProbesFilterLikeTheTextureUnits) {
     const ComputedDataset dataset(flat, kSamples, 2, ramps, 3);
     const auto draw = [&](PhotoFilter filter) {

@@ -21,6 +21,9 @@ constexpr int kHeight = 64;
 /// What TERRAY_SIGNAL_SKY draws where there is no ground.
 constexpr Rgba kSignal = {255, 0, 255, 255};
 
+/// Air that bends light up so much that the earth, of 32 km radius for the eye, drops by 6 km over 20 km.
+constexpr EarthOptions kSmallEarth{.shape = EarthShape::curved, .refraction = -200};
+
 struct Comparison {
     int64_t pixels = 0;
     int64_t ground = 0;       ///< pixels whose ray is in the drawn ground, by the oracle
@@ -53,14 +56,10 @@ Comparison compare(const std::vector<DrawNode>& drawn, const View& view, const F
     for (int64_t y = 0; y < nodes.height(); ++y)
         for (int64_t x = 0; x < nodes.width(); ++x) {
             ++result.pixels;
-            // The oracle works in heights. Its rays keep their t.
-            const glm::dvec3 inHeights(1, 1, 1 / view.exaggeration);
-            const glm::dvec3 eye = inHeights * view.eye;
-            const glm::dvec3 direction =
-                inHeights * view.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+            const glm::dvec3 direction = view.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
             const uint32_t node = nodes.at(x, y);
             const double t = hits.at(x, y).w;
-            const auto sure = oracle.meet(drawn, eye, direction, ColumnOracle::Columns::shrunk, floor);
+            const auto sure = oracle.meet(drawn, view, direction, ColumnOracle::Columns::shrunk, floor);
             if (sure) {
                 ++result.ground;
                 if (node == 0 || colours.at(x, y) == kSignal) {
@@ -70,7 +69,7 @@ Comparison compare(const std::vector<DrawNode>& drawn, const View& view, const F
                 }
             }
             if (node != 0) {
-                const auto possible = oracle.meet(drawn, eye, direction, ColumnOracle::Columns::grown, floor - 1e6);
+                const auto possible = oracle.meet(drawn, view, direction, ColumnOracle::Columns::grown, floor - 1e6);
                 if (!possible) ++result.falseGround;
                 if (possible && t < *possible * (1 - 0x1p-18) - 0.05) ++result.misplaced;
             }
@@ -174,6 +173,33 @@ TEST_F(Watertight, ExaggeratedAndFlattenedGroundShowsNoHole) {
     expectClean(all);
     EXPECT_GT(all.ground, all.pixels / 4);
     EXPECT_GT(all.jumps, 300);
+}
+
+TEST_F(Watertight, RandomCamerasOverASmallEarthShowNoHoleByEitherLaunch) {
+    const ComputedDataset dataset(4096, 5, 42);
+    ColumnOracle oracle(dataset.source());
+    std::mt19937 random(1637);
+    Comparison all;
+    for (const Launch launch : {Launch::raster, Launch::compute})
+        for (const double factor : {1.0, 2.0}) {
+            EngineOptions options = inspectedOptions(Surface::columns);
+            options.gpuHeightBytes = (factor > 1 ? 3 : 24) * 720'000;
+            options.render.launch = launch;
+            options.earth = kSmallEarth;
+            options.exaggeration = factor;
+            Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
+            for (int i = 0; i < 40; ++i) {
+                engine.drawFrame(randomCamera(random, oracle, dataset), true);
+                const Comparison one = compare(engine, oracle);
+                if (one.holes + one.falseGround + one.misplaced + one.outOfSteps > 0)
+                    ADD_FAILURE() << "factor " << factor << " camera " << i << ": holes " << one.holes
+                                  << ", false ground " << one.falseGround << ", misplaced " << one.misplaced;
+                all += one;
+            }
+        }
+    expectClean(all);
+    EXPECT_GT(all.ground, all.pixels / 5);
+    EXPECT_GT(all.jumps, 500);
 }
 
 /// Blocks of 512 samples alternate between 0 and 900 m, so every tile border is a cliff; and rough inside.

@@ -34,6 +34,7 @@ class EngineTest : public testing::Test {
     ShaderLibrary shaders_;
     AnalyticDataset heights_{{}};
     AnalyticDataset both_{{.imageryLevel = 3}};
+    EarthModel flat_{heights_.metadata(), {.shape = EarthShape::flat}, 1, 1};
 };
 
 /// Low over the south of the dataset, looking to the north: from the finest level to the coarsest.
@@ -94,7 +95,7 @@ TEST_F(EngineTest, StreamingConvergesToTheWaitedPicture) {
 }
 
 TEST_F(EngineTest, EachFrameOfAStreamShowsGroundWhereverTheWaitedOneDoes) {
-    const Camera camera = overviewCamera(heights_.metadata(), double{kWidth} / kHeight);
+    const Camera camera = overviewCamera(heights_.metadata(), double{kWidth} / kHeight, flat_);
     const auto streaming = engine(heights_);
     (void)streaming->drawFrame(camera, false);  // nothing but the root can be there
     const int64_t first = groundPixels(*streaming);
@@ -222,7 +223,8 @@ TEST_F(EngineTest, HitsLieOnTheGroundInWorldCoordinates) {
 TEST_F(EngineTest, TheOverviewShowsTheWholeDataset) {
     for (const auto& [width, height] : {std::pair{160, 120}, std::pair{90, 160}}) {
         const double exaggeration = width > height ? 1 : 20;
-        const Camera camera = overviewCamera(heights_.metadata(), static_cast<double>(width) / height, exaggeration);
+        const double aspect = static_cast<double>(width) / height;
+        const Camera camera = overviewCamera(heights_.metadata(), aspect, flat_, exaggeration);
         const View view = exaggerated(viewOf(camera, width, height), exaggeration);
         const GroundRect ground = heights_.metadata().groundBounds();
         for (const double x : {ground.west, ground.east})

@@ -45,6 +45,18 @@ TEST(EngineOptions, DefaultsAreThoseOfTheLibrary) {
     EXPECT_NEAR(glm::length(options.render.sunDirection - sun), 0, 0.002);
 }
 
+TEST(EngineOptions, TheEarthHasTheShapeThatIsAskedFor) {
+    EXPECT_EQ(parsed({}).earth.shape, EarthShape::automatic);
+    EXPECT_EQ(parsed({}).earth.refraction, 0.13);
+    EXPECT_EQ(parsed({"--earth", "flat"}).earth.shape, EarthShape::flat);
+    const EarthOptions curved = parsed({"--earth", "curved", "--refraction", "-0.5"}).earth;
+    EXPECT_EQ(curved.shape, EarthShape::curved);
+    EXPECT_EQ(curved.refraction, -0.5);
+    EXPECT_EQ(refusal({"--earth", "round"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--refraction", "1"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--refraction", "-6"}), ExitCode::usage);
+}
+
 TEST(EngineOptions, MemoryGoesToHeightsWhenThereIsNoPhoto) {
     EXPECT_EQ(parsed({"--gpu-memory", "100M"}).gpuHeightBytes, 50ull << 20);
     EXPECT_EQ(parsed({"--gpu-memory", "100M"}).gpuImageryBytes, 50ull << 20);

@@ -57,10 +57,13 @@ TEST(FeatureSet, MarchAndResolveIgnoreWhatTheyDoNotUse) {
     lookOnly.imagery = lookOnly.normals = lookOnly.signalSky = lookOnly.photoProbes = lookOnly.linearColour = true;
     EXPECT_EQ(lookOnly.marching(), FeatureSet());
     FeatureSet marchOnly;
-    marchOnly.statistics = marchOnly.occlusion = marchOnly.bilinear = true;
+    marchOnly.statistics = marchOnly.occlusion = marchOnly.bilinear = marchOnly.curved = true;
     EXPECT_EQ(marchOnly.resolving(), FeatureSet());
     const FeatureSet probesForNothing{.photoProbes = true};
     EXPECT_EQ(probesForNothing.resolving(), FeatureSet());
+    // Only a photo's footprint asks how the earth falls.
+    const FeatureSet photoOverCurve{.imagery = true, .curved = true};
+    EXPECT_EQ(photoOverCurve.resolving(), photoOverCurve);
 }
 
 }  // namespace

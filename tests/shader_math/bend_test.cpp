@@ -33,6 +33,21 @@ TYPED_TEST(Bend, GainsTheDropOfAGlobe) {
     EXPECT_NEAR(TypeParam::bentSlope(0, bend, real(1e5)), 1e5 / 6371e3, 0.016 * 4 * kRoundoff<TypeParam>);
 }
 
+TYPED_TEST(Bend, DropIsTheFormAndFallItsGradient) {
+    using vec3 = typename TypeParam::vec3;
+    // Powers of two: every operation is exact, and central differences of a quadratic are.
+    const vec3 form(2, 0.5f, 4);
+    EXPECT_EQ(TypeParam::earthDrop(form, 8, -2), 2 * 64 - 0.5 * 16 + 4 * 4);
+    for (const float east : {-8.0f, 0.0f, 4.0f})
+        for (const float north : {-16.0f, 2.0f}) {
+            const auto fall = TypeParam::earthFall(form, east, north);
+            EXPECT_EQ(fall.x,
+                      (TypeParam::earthDrop(form, east + 1, north) - TypeParam::earthDrop(form, east - 1, north)) / 2);
+            EXPECT_EQ(fall.y,
+                      (TypeParam::earthDrop(form, east, north + 1) - TypeParam::earthDrop(form, east, north - 1)) / 2);
+        }
+}
+
 TYPED_TEST(Bend, SlopeIsTheDerivativeOfTheHeight) {
     // Central differences of a parabola are exact; with powers of two so is every operation.
     for (const float t : {0.0f, 4.0f, 64.0f})

@@ -33,10 +33,13 @@ namespace terray::test {
         static constexpr auto* columnTime = math::columnTime;         \
         static constexpr auto* clearanceAt = math::clearanceAt;       \
         static constexpr auto* firstContact = math::firstContact;     \
+        static constexpr auto* riseTime = math::riseTime;             \
         static constexpr auto* patchHeight = math::patchHeight;       \
         static constexpr auto* patchClearance = math::patchClearance; \
         static constexpr auto* bentHeight = math::bentHeight;         \
         static constexpr auto* bentSlope = math::bentSlope;           \
+        static constexpr auto* earthDrop = math::earthDrop;           \
+        static constexpr auto* earthFall = math::earthFall;           \
         static constexpr auto* projected = math::projected;           \
         static constexpr auto* pixelFootprint = math::pixelFootprint; \
     };

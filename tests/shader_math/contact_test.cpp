@@ -204,4 +204,30 @@ TYPED_TEST(FirstContact, LiesOnTheGroundAndNearTheRoot) {
     EXPECT_GT(roots, 50000);
 }
 
+template <class Math>
+class RiseTime : public testing::Test {};
+TYPED_TEST_SUITE(RiseTime, terray::test::Precisions, terray::test::PrecisionNames);
+
+TYPED_TEST(RiseTime, IsTheLaterRootOfARayThatStartsBelow) {
+    using Clearance = typename TypeParam::Clearance;
+    EXPECT_EQ(TypeParam::riseTime(Clearance{1, 2, -3}), 1) << "(s + 3) (s - 1)";
+    EXPECT_EQ(TypeParam::riseTime(Clearance{1, -2, -3}), 3) << "(s + 1) (s - 3), sinking first";
+    EXPECT_EQ(TypeParam::riseTime(Clearance{4, 0, -16}), 2);
+    EXPECT_EQ(TypeParam::riseTime(Clearance{0, 2, -8}), 4) << "a straight ray";
+    EXPECT_GT(TypeParam::riseTime(Clearance{0, -2, -8}), 1e30) << "one that never comes up";
+}
+
+TYPED_TEST(RiseTime, LosesNoDigitsWhereTheBendIsNearZero) {
+    // 300 km at a slope of 1 %, bent by an earth of 6371 km, from 20 km below; and the same hardly bent.
+    using real = typename TypeParam::real;
+    for (const double bend : {7.8e-8, 1e-12, 1e-20})
+        for (const double slope : {0.01, -0.01}) {
+            const double start = -20e3;
+            const double root = std::sqrt(slope * slope - 4 * bend * start);
+            const double exact = slope > 0 ? -2 * start / (root + slope) : (root - slope) / (2 * bend);
+            const double found = TypeParam::riseTime({real(bend), real(slope), real(start)});
+            EXPECT_NEAR(found, exact, 8 * kRoundoff<TypeParam> * exact) << bend << ' ' << slope;
+        }
+}
+
 }  // namespace
