@@ -22,6 +22,7 @@ struct Ray {
     bvec2 mirrored;
 #if TERRAY_CURVED
     float bend;
+    float lowest;  // t of the ray's lowest point
 #endif
 };
 
@@ -33,19 +34,17 @@ Ray mirroredRay(NodeParameters node, vec3 direction) {
     ray.inverse = vec3(safeInverse(ray.direction.x), safeInverse(ray.direction.y), safeInverse(ray.direction.z));
 #if TERRAY_CURVED
     ray.bend = rayBend(node, direction);
+    ray.lowest = lowestTime(ray.direction.z, ray.bend);
 #endif
     return ray;
 }
 
 #if TERRAY_CURVED
 
-// Of a ray above a level, from t = enter on.
-Clearance clearanceOver(Ray ray, float level, float enter) {
-    Clearance clearance;
-    clearance.bend = ray.bend;
-    clearance.slope = bentSlope(ray.direction.z, ray.bend, enter);
-    clearance.start = bentHeight(ray.eye.z, ray.direction.z, ray.bend, enter) - level;
-    return clearance;
+// t at which the ray is first at or below `top` within [enter, leave], or kNoContact.
+float blockContact(Ray ray, float top, float enter, float leave) {
+    if (!bentMeetsColumn(top, ray.eye.z, ray.direction.z, ray.bend, ray.lowest, enter, leave)) return kNoContact;
+    return bentColumnTime(top, ray.eye.z, ray.direction.z, ray.bend, enter, leave);
 }
 
 // The part of a ray over a box and not below it. A ray that sinks through the bottom and rises again within the box keeps
@@ -54,20 +53,14 @@ Interval clippedRay(Ray ray, vec3 boxMin, vec3 boxMax) {
     float everywhere = 1e30;
     Interval span = boxInterval(vec3(ray.eye.xy, 0.0), vec3(ray.inverse.xy, 1.0), vec3(boxMin.xy, -everywhere),
                                 vec3(boxMax.xy, everywhere));
-    Clearance clearance = clearanceOver(ray, boxMin.z, span.enter);
-    if (clearance.start < 0.0) {
-        span.enter += riseTime(clearance);
+    float above = bentHeight(ray.eye.z, ray.direction.z, ray.bend, span.enter) - boxMin.z;
+    if (above < 0.0) {
+        span.enter += riseTime(Clearance(ray.bend, bentSlope(ray.direction.z, ray.bend, span.enter), above));
     } else {
-        float sinks = firstContact(clearance, span.exit - span.enter);
-        if (sinks >= 0.0) span.exit = min(span.exit, span.enter + sinks);
+        float sinks = blockContact(ray, boxMin.z, span.enter, span.exit);
+        if (sinks != kNoContact) span.exit = sinks;
     }
     return span;
-}
-
-// t at which the ray is first at or below `top` within [enter, leave], or kNoContact.
-float blockContact(Ray ray, float top, float enter, float leave) {
-    float s = firstContact(clearanceOver(ray, top, enter), leave - enter);
-    return s < 0.0 ? kNoContact : min(enter + s, leave);
 }
 
 #else

@@ -23,4 +23,25 @@ MATH_FUNCTION vec2 earthFall(vec3 form, real east, real north) {
 // Change of height per unit of t.
 MATH_FUNCTION real bentSlope(real directionZ, real bend, real t) { return directionZ + REAL(2.0) * bend * t; }
 
+// When a bent ray is lowest; far behind or ahead for one that is not bent.
+MATH_FUNCTION real lowestTime(real directionZ, real bend) {
+    real tiny = REAL(1e-30);
+    return -directionZ / max(REAL(2.0) * bend, tiny);
+}
+
+// As meetsColumn and columnTime (math/column.glsl). A parabola that opens upwards is least where its vertex is, or at the end
+// of [enter, exit] that is nearest to that.
+MATH_FUNCTION bool bentMeetsColumn(real top, real eyeZ, real directionZ, real bend, real lowest, real enter, real exit) {
+    return bentHeight(eyeZ, directionZ, bend, max(enter, min(lowest, exit))) <= top;
+}
+
+// The earlier of the two crossings of `top`, in the form that adds numbers of one sign: the later one is a rise. Its height is
+// off by the roundings of what adds up to it, as bentHeight's is.
+MATH_FUNCTION real bentColumnTime(real top, real eyeZ, real directionZ, real bend, real enter, real exit) {
+    real above = eyeZ - top;
+    real root = sqrt(max(directionZ * directionZ - REAL(4.0) * bend * above, REAL(0.0)));
+    real tiny = REAL(1e-30);
+    return max(enter, min(REAL(2.0) * above / max(root - directionZ, tiny), exit));
+}
+
 #endif

@@ -188,7 +188,7 @@ TEST_F(Watertight, RandomCamerasOverASmallEarthShowNoHoleByEitherLaunch) {
             options.earth = kSmallEarth;
             options.exaggeration = factor;
             Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
-            for (int i = 0; i < 40; ++i) {
+            for (int i = 0; i < 30; ++i) {
                 engine.drawFrame(randomCamera(random, oracle, dataset), true);
                 const Comparison one = compare(engine, oracle);
                 if (one.holes + one.falseGround + one.misplaced + one.outOfSteps > 0)

@@ -55,6 +55,49 @@ TYPED_TEST(Bend, SlopeIsTheDerivativeOfTheHeight) {
                   TypeParam::bentSlope(-2, 0.25, t));
 }
 
+TYPED_TEST(Bend, OverAColumnDecidesAsExactArithmeticUnlessTheRayGrazes) {
+    // Codes of 1 cm to 1 m, lines of sight of up to 600 km, over an earth as it is: eye and drop reach 1e6 codes.
+    using real = typename TypeParam::real;
+    Random random(77);
+    int touched = 0, atVertex = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const auto any = [&](double low, double high) { return static_cast<real>(random.between(low, high)); };
+        const real top = any(0, 65535), bend = static_cast<real>(std::pow(10.0, random.between(-12, -5.5)));
+        real eyeZ = any(0, 1e6), dz = any(-6, 1), enter = any(0, 6e5);
+        if (i % 2 == 0) {  // within 20 km of its lowest point, about as high as the top
+            dz = -2 * bend * (enter + any(0, 2e4));
+            eyeZ = top + dz * dz / (4 * bend) - bend * any(-4e8, 4e8);
+        }
+        const real exit = enter + any(0, 5e4);
+        const real lowest = TypeParam::lowestTime(dz, bend);
+        const double vertex = -double{dz} / (2 * double{bend});
+        const double at = std::max(double{enter}, std::min(vertex, double{exit}));
+        const auto clearance = [&](double t) {
+            return (double{bend} * t + double{dz}) * t + double{eyeZ} - double{top};
+        };
+        const auto rounding = [&](double t) {
+            return 6 * kRoundoff<TypeParam> * (double{eyeZ} + std::abs(double{dz} * t) + double{bend} * t * t + 65535);
+        };
+        const bool meets = TypeParam::bentMeetsColumn(top, eyeZ, dz, bend, lowest, enter, exit);
+        if (std::abs(clearance(at)) > rounding(at)) {
+            ASSERT_EQ(meets, clearance(at) <= 0) << i;
+        }
+        if (!meets) continue;
+        ++touched;
+        atVertex += clearance(enter) > 0 && clearance(exit) > 0 ? 1 : 0;
+        const double t = TypeParam::bentColumnTime(top, eyeZ, dz, bend, enter, exit);
+        ASSERT_GE(t, enter);
+        ASSERT_LE(t, exit);
+        ASSERT_LE(clearance(t), rounding(t)) << i << ": above the column";
+        // Not late: it is where the ray enters, or at the height of the top.
+        if (t > enter) {
+            ASSERT_GE(clearance(t), -rounding(t)) << i;
+        }
+    }
+    EXPECT_GT(touched, 10000);
+    EXPECT_GT(atVertex, 100) << "rays that dip within a column are among the cases";
+}
+
 TYPED_TEST(Bend, OverOneColumnTouchesAtTheParabolasRoots) {
     // 10 - 6 t + t^2 over level 5: roots 1 and 5; over level 1: (t - 3)^2; over level 0: none.
     const auto first = [](int top) {

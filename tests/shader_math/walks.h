@@ -95,13 +95,9 @@ Contact<Math> columnContact(const Heights& heights, const Ray<Math>& ray, typena
         if (!Math::meetsColumn(top, ray.eye.z, ray.direction.z, enter, leave)) return std::nullopt;
         return Math::columnTime(top, ray.eye.z, ray.direction.z, Math::safeInverse(ray.direction.z), enter, leave);
     }
-    const typename Math::Clearance clearance = {
-        .bend = ray.bend,
-        .slope = Math::bentSlope(ray.direction.z, ray.bend, enter),
-        .start = Math::bentHeight(ray.eye.z, ray.direction.z, ray.bend, enter) - top};
-    const real s = Math::firstContact(clearance, leave - enter);
-    if (s < real{0}) return std::nullopt;
-    return std::min(enter + s, leave);
+    const real lowest = Math::lowestTime(ray.direction.z, ray.bend);
+    if (!Math::bentMeetsColumn(top, ray.eye.z, ray.direction.z, ray.bend, lowest, enter, leave)) return std::nullopt;
+    return Math::bentColumnTime(top, ray.eye.z, ray.direction.z, ray.bend, enter, leave);
 }
 
 /// The same with the patch between the four points of a cell.
