@@ -18,6 +18,8 @@ using uvec4 = glm::uvec4;
 #define TERRAY_UNIT_ID 2       // usampler2D: node last found in front, by the ID pass
 #define TERRAY_UNIT_HIT 3      // sampler2D: hit in the tile frame, view depth
 #define TERRAY_UNIT_NODE 4     // usampler2D: node index + 1
+#define TERRAY_UNIT_SKY 5      // sampler2D: the sky by direction, see SkyTable
+#define TERRAY_UNIT_AIR 6      // sampler3D: the air by direction and distance, see SkyTable
 #define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
 #define TERRAY_IMAGE_HIT 1     // image2D rgba32f, compute launch
 #define TERRAY_IMAGE_NODE 2    // uimage2D r32ui, compute launch
@@ -27,6 +29,7 @@ using uvec4 = glm::uvec4;
 #define TERRAY_BUFFER_FRAME 1  // UBO: FrameParameters
 #define TERRAY_BUFFER_BOXES 2  // SSBO: vec4[], of each node the pixels that its box covers; compute launch
 #define TERRAY_BUFFER_BINS 3   // SSBO: uint[], of each square of pixels a bit for each node; compute launch
+#define TERRAY_BUFFER_SKY 6    // SSBO: SkyParameters
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
 
 // Compute launch: pixels along the side of a work group, and of the square of pixels that nodes are binned to.
@@ -36,6 +39,14 @@ using uvec4 = glm::uvec4;
 // NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear.
 #define TERRAY_START_LEVEL_MASK 0xffu
 #define TERRAY_BILINEAR_BIT 0x100u
+
+// Within the programs that make the sky (SkyTable): tables of the air, and SkyInput, UBO.
+#define TERRAY_SKY_UNIT_TRANSMITTANCE 0
+#define TERRAY_SKY_UNIT_ECHO 1
+#define TERRAY_BUFFER_SKY_INPUT 2
+// Heights for which light on the ground is known: evenly from sea level to the top one, metres.
+#define TERRAY_SKY_LIGHTS 32
+#define TERRAY_SKY_TOP_LIGHT 9000.0
 
 // A slot that is none: NodeParameters::source.y of a node without photo.
 #define TERRAY_NO_SLOT 0xffffffffu
@@ -49,9 +60,8 @@ struct NodeParameters {
     vec4 forward;  // xyz: the view axis, 1 m, in the tile frame
     vec4 boxMin;   // xyz: the cell's box in the tile frame; w: curved earth: what the seen box needs more, metres down
     vec4 boxMax;   // likewise; w: metres up
-    vec4 photo;  // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
-    uvec4
-        source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: start level, surface
+    vec4 photo;    // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
+    uvec4 source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: start level, surface
 };
 
 // One frame.
@@ -63,11 +73,28 @@ struct FrameParameters {
     vec4 viewScale;  // x: 1 / length of right, y: 1 / length of up, squared; z: most probes of a photo sample
     vec4 ground;     // rgb: linear colour of ground without photo
     vec4 bend;       // curved earth: height gained per squared metre, xyz: east east, east north, north north
+    vec4 air;        // x: visual range at sea level, y: the eye's height above the sea, metres; z: height over world z
+};
+
+// What a sky is made for.
+struct SkyInput {
+    vec4 air;   // x: visual range at sea level, metres
+    vec4 view;  // x: sine of the sun's elevation; y: the eye's height above the sea, metres
+};
+
+// The sky of a moment, beside its table. Colours linear, as they are shown.
+struct SkyParameters {
+    vec4 shown;                        // rgb: per unit of sunlight above the air; w: elevation of the horizon, radians
+    vec4 disc;                         // rgb: the sun's disc at its centre
+    vec4 night;                        // rgb: radiance of the night sky, per unit of sunlight above the air
+    vec4 sunLight[TERRAY_SKY_LIGHTS];  // rgb: on ground that faces the sun, at each height
+    vec4 skyLight[TERRAY_SKY_LIGHTS];  // rgb: on level ground
 };
 
 #ifdef __cplusplus
+static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(NodeParameters) == 8 * 16);
-static_assert(sizeof(FrameParameters) == 7 * 16);
+static_assert(sizeof(FrameParameters) == 8 * 16);
 }  // namespace terray::interop
 #endif
 

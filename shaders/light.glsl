@@ -1,14 +1,34 @@
 // light.glsl: sun and sky on matt ground; linear.
+// With TERRAY_SKY both follow the sun's elevation and the height of the ground: redder and dimmer while it sinks, a while
+// longer on the summits.
 #ifndef TERRAY_LIGHT
 #define TERRAY_LIGHT
+#include "daylight.glsl"
+#if TERRAY_SKY
+#include "sky/moment.glsl"
+#endif
 
-// Weights of sun and sky: flat ground under a sun at 40 degrees shows its own colour. Sky light falls off to half on a
-// vertical wall, which sees half of the sky.
-const vec3 kSunLight = vec3(1.22, 1.16, 1.08);
-const vec3 kSkyLight = vec3(0.22, 0.25, 0.30);
+struct Light {
+    vec3 sun;  // on ground that faces it
+    vec3 sky;  // on level ground
+};
 
-vec3 lit(vec3 colour, vec3 normal, vec3 sun) {
-    return colour * (kSunLight * max(dot(normal, sun), 0.0) + kSkyLight * (0.5 + 0.5 * normal.z));
+// height: of the ground above the sea, metres.
+#if TERRAY_SKY
+Light lightAt(float height) {
+    float place = clamp(height / TERRAY_SKY_TOP_LIGHT, 0.0, 1.0) * float(TERRAY_SKY_LIGHTS - 1);
+    int below = min(int(place), TERRAY_SKY_LIGHTS - 2);
+    float above = place - float(below);
+    return Light(mix(sky.sunLight[below].rgb, sky.sunLight[below + 1].rgb, above),
+                 mix(sky.skyLight[below].rgb, sky.skyLight[below + 1].rgb, above));
+}
+#else
+Light lightAt(float height) { return Light(kSunLight, kSkyLight); }
+#endif
+
+// Sky light falls off to half on a vertical wall, which sees half of the sky.
+vec3 lit(vec3 colour, vec3 normal, vec3 sun, Light light) {
+    return colour * (light.sun * max(dot(normal, sun), 0.0) + light.sky * (0.5 + 0.5 * normal.z));
 }
 
 #endif

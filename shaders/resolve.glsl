@@ -1,6 +1,7 @@
-// resolve.glsl: from a pixel's hit to its colour: slope, photo, light, sky. The same for the raster and the compute launch.
+// resolve.glsl: from a pixel's hit to its colour: slope, photo, light, air, sky. The same for the raster and the compute launch.
 #ifndef TERRAY_RESOLVE
 #define TERRAY_RESOLVE
+#include "air.glsl"
 #include "light.glsl"
 #include "nodes.glsl"
 #include "photo.glsl"
@@ -20,9 +21,10 @@ Resolved resolvePixel(ivec2 pixel) {
     vec2 position = picturePosition(vec2(pixel) + 0.5);
     uint found = texelFetch(hitNodes, pixel, 0).r;
     Resolved resolved = Resolved(vec3(0.0), vec3(0.0));
+    vec3 ray = frame.forward.xyz + position.x * frame.right.xyz + position.y * frame.up.xyz;
+    vec3 direction = normalize(ray);
     if (found == 0u) {
-        vec3 direction = frame.forward.xyz + position.x * frame.right.xyz + position.y * frame.up.xyz;
-        resolved.colour = skyColour(normalize(direction), frame.sun.xyz);
+        resolved.colour = skyThroughAir(skyColour(direction, frame.sun.xyz), direction);
     } else {
         NodeParameters node = nodes[found - 1u];
         vec4 hit = texelFetch(hits, pixel, 0);
@@ -30,7 +32,9 @@ Resolved resolvePixel(ivec2 pixel) {
         vec2 rise = slope * (node.right.w / node.eye.w);  // metres per metre to the east and to the south
         resolved.normal = normalize(vec3(-rise.x, rise.y, 1.0));
         vec3 ground = groundColour(node, hit.xy, seenSlope(node, hit.xy, slope), hit.w, position);
-        resolved.colour = lit(ground, resolved.normal, frame.sun.xyz);
+        float height = frame.air.y + (hit.z - node.eye.z) * (node.right.w * frame.air.z);
+        vec3 shaded = lit(ground, resolved.normal, frame.sun.xyz, lightAt(height));
+        resolved.colour = throughAir(shaded, direction, hit.w * length(ray), height);
     }
     resolved.colour = storedColour(resolved.colour, pixel);
     return resolved;

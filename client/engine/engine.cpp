@@ -9,6 +9,7 @@
 
 #include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
+#include "client/engine/sun_clock.h"
 
 namespace terray {
 namespace {
@@ -53,6 +54,8 @@ struct Engine::State {
         : options(settled(given, source)),
           earth(source.metadata(), options.earth, options.selection.tolerance.value(),
                 viewOf(Camera(), width, height).focalPixels()),
+          sunClock(options.sunTime ? std::optional<SunClock>(std::in_place, *options.sunTime, source.metadata())
+                                   : std::nullopt),
           resident(source, shaders, slotOptions(source, options), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
           targets(width, height, options.features, options.colour),
@@ -77,6 +80,7 @@ struct Engine::State {
 
     EngineOptions options;
     EarthModel earth;
+    std::optional<SunClock> sunClock;
     ResidentTiles resident;
     TerrainRenderer renderer;
     FrameTargets targets;
@@ -198,6 +202,7 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     const Clock::time_point start = Clock::now();
     State& state = *state_;
     state.report = {};
+    if (state.sunClock) state.options.render.sunDirection = state.sunClock->direction(camera.position);
     View view = viewOf(camera, state.targets.width(), state.targets.height());
     view.earth = state.earth.at(camera.position);
     state.view = exaggerated(view, state.options.exaggeration);

@@ -16,6 +16,7 @@
 #include "client/stream/dataset_source.h"
 #include "client/stream/pager.h"
 #include "client/stream/selection.h"
+#include "common/utc_time.h"
 
 namespace terray {
 
@@ -32,6 +33,8 @@ struct EngineOptions {
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;
     double exaggeration = 1;  ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
+    /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.
+    std::optional<UtcTime> sunTime;
 };
 
 /// What a frame did. Times in milliseconds, sizes in bytes.
@@ -61,7 +64,9 @@ struct FrameReport {
 class Engine {
   public:
     /// Loads the root tiles; they stay on the GPU for good. `source` and `shaders` must outlive the engine.
-    /// Throws Error(dataset) when a root tile cannot be had, Error(graphics) when a shader does not compile.
+    /// Throws Error(dataset) when a root tile cannot be had, Error(graphics) when a shader does not compile; with a
+    /// sun's time Error(georeference) when the dataset has no coordinate system, Error(unsupported) in a build without
+    /// PROJ.
     Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width, int height);
     ~Engine();
     Engine(const Engine&) = delete;

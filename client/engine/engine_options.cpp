@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/error.h"
+#include "common/sun_position.h"
 #include "common/units.h"
 
 namespace terray {
@@ -41,6 +42,13 @@ std::string degreesOf(const glm::dvec3& sun) {
     return text;
 }
 
+UtcTime sunTime(const std::string& text, bool sunGiven) {
+    if (sunGiven) throw Error(ExitCode::usage, "--sun and --sun-time both say where the sun is: give one of them");
+    const Result<UtcTime> time = parseUtcTime(text);
+    if (!time.ok()) throw Error(ExitCode::usage, "--sun-time: " + time.failure().message);
+    return *time;
+}
+
 }  // namespace
 
 glm::dvec3 sunDirection(const std::string& azimuthAndElevation) {
@@ -54,9 +62,17 @@ glm::dvec3 sunDirection(const std::string& azimuthAndElevation) {
     }
     if (!azimuth || !elevation || std::abs(*elevation) > 90)
         refuse("--sun", azimuthAndElevation, "AZIMUTH,ELEVATION in degrees, the elevation from -90 to 90");
-    const double turn = radiansFromDegrees(*azimuth).value();
-    const double rise = radiansFromDegrees(*elevation).value();
-    return {std::sin(turn) * std::cos(rise), std::cos(turn) * std::cos(rise), std::sin(rise)};
+    return directionOf({.azimuth = radiansFromDegrees(*azimuth), .elevation = radiansFromDegrees(*elevation)});
+}
+
+std::optional<Metres> visualRangeNamed(const std::string& text) {
+    constexpr double kLeast = 1e3;
+    constexpr double kMost = 3e5;
+    if (text == "off") return {};
+    const std::optional<double> metres = parseNumber(text);
+    if (!metres || *metres < kLeast || *metres > kMost)
+        refuse("--visual-range", text, "off, or metres from " + shortText(kLeast) + " to " + shortText(kMost));
+    return Metres(*metres);
 }
 
 PhotoFilter photoFilter(const std::string& name) {
@@ -92,7 +108,14 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
     line.option("--imagery-tolerance", imageryTolerance_, "PIXELS", "largest projected side of a photo's texel (1)");
     line.flag("--no-imagery", noImagery_, "ignore the dataset's photo");
-    line.option("--sun", sun_, "AZIMUTH,ELEVATION", "degrees from grid north and above the horizon (" + sun_ + ")");
+    line.option("--sun", sun_, "AZIMUTH,ELEVATION", "degrees from grid north and above the horizon (" + sun_ + ")")
+        .given(sunGiven_);
+    line.option("--sun-time", sunTime_, "TIME",
+                "the sun of that moment over the camera instead, as 2026-06-21T12:00Z or with an offset as +02:00");
+    line.option("--sky", sky_, "gradient|physical",
+                "physical: by the sun's elevation and the eye's height, with its light on the ground (gradient)");
+    line.option("--visual-range", visualRange_, "METRES|off",
+                "aerial perspective: how far a black mountain at sea level is told from the sky (off)");
     line.option("--anisotropy", anisotropy_, "RATIO", "of photo sampling, 1 to 16 (16)");
     line.option("--photo-filter", photoFilter_, "auto|hardware|probes",
                 "who filters photos anisotropically: auto takes probes in the shader on software rasterisers (auto)");
@@ -125,6 +148,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
     requireRange("--refraction", refraction_, -5, 0.99);
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
+    if (sky_ != "gradient" && sky_ != "physical") refuse("--sky", sky_, "gradient or physical");
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
 
     EngineOptions options;
@@ -132,6 +156,9 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.selection.imageryTolerance = Pixels(imageryTolerance_);
     options.selection.useImagery = datasetHasImagery && !noImagery_;
     options.render.sunDirection = sunDirection(sun_);
+    if (!sunTime_.empty()) options.sunTime = sunTime(sunTime_, sunGiven_);
+    options.render.sky = sky_ == "physical";
+    options.render.visualRange = visualRangeNamed(visualRange_);
     options.render.anisotropy = static_cast<float>(anisotropy_);
     options.render.photoFilter = photoFilter(photoFilter_);
     options.render.launch = launchNamed(launch_);
@@ -152,7 +179,10 @@ Json EngineCommandLine::toJson() const {
     return Json::Object{{"tolerance", tolerance_},
                         {"imagery-tolerance", imageryTolerance_},
                         {"no-imagery", noImagery_},
-                        {"sun", sun_},
+                        {"sun", sunTime_.empty() ? Json(sun_) : Json()},
+                        {"sun-time", sunTime_.empty() ? Json() : Json(sunTime_)},
+                        {"sky", sky_},
+                        {"visual-range", visualRange_},
                         {"anisotropy", anisotropy_},
                         {"photo-filter", photoFilter_},
                         {"host-memory", hostMemory_},

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "client/engine/engine.h"
 #include "common/command_line.h"
 #include "common/json.h"
+#include "common/units.h"
 
 namespace terray {
 
@@ -31,6 +33,10 @@ class EngineCommandLine {
     double imageryTolerance_ = SelectionOptions().imageryTolerance.value();
     bool noImagery_ = false;
     std::string sun_;
+    bool sunGiven_ = false;
+    std::string sunTime_;
+    std::string sky_ = "gradient";
+    std::string visualRange_ = "off";
     double anisotropy_ = RenderOptions().anisotropy;
     std::string photoFilter_ = "auto";
     uint64_t hostMemory_ = PagerOptions().hostBudgetBytes;
@@ -50,6 +56,10 @@ class EngineCommandLine {
 /// The direction towards a sun given as "AZIMUTH,ELEVATION": degrees clockwise from grid north, and above the horizon
 /// (-90 .. 90). Unit length, world frame. Throws Error(usage) on anything else.
 [[nodiscard]] glm::dvec3 sunDirection(const std::string& azimuthAndElevation);
+
+/// The visual range that "off" or a number of metres from 1000 to 300000 names; none when it is off. Pure air has 323
+/// km. Throws Error(usage) on anything else.
+[[nodiscard]] std::optional<Metres> visualRangeNamed(const std::string& text);
 
 /// The filter that "auto", "hardware" or "probes" names. Throws Error(usage) on anything else.
 [[nodiscard]] PhotoFilter photoFilter(const std::string& name);

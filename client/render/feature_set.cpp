@@ -12,16 +12,24 @@ FeatureSet FeatureSet::resolving() const {
             .signalSky = signalSky,
             .linearColour = linearColour,
             .photoProbes = imagery && photoProbes,
-            .curved = imagery && curved};
+            .curved = imagery && curved,
+            .sky = sky,
+            .air = air};
 }
 
 ShaderDefines FeatureSet::defines() const {
     const auto digit = [](bool on) { return on ? "1" : "0"; };
     return {
-        {"TERRAY_IMAGERY", digit(imagery)},           {"TERRAY_STATISTICS", digit(statistics)},
-        {"TERRAY_NORMALS", digit(normals)},           {"TERRAY_SIGNAL_SKY", digit(signalSky)},
-        {"TERRAY_OCCLUSION", digit(occlusion)},       {"TERRAY_PHOTO_PROBES", digit(photoProbes)},
-        {"TERRAY_BILINEAR", digit(bilinear)},         {"TERRAY_CURVED", digit(curved)},
+        {"TERRAY_IMAGERY", digit(imagery)},
+        {"TERRAY_STATISTICS", digit(statistics)},
+        {"TERRAY_NORMALS", digit(normals)},
+        {"TERRAY_SIGNAL_SKY", digit(signalSky)},
+        {"TERRAY_OCCLUSION", digit(occlusion)},
+        {"TERRAY_PHOTO_PROBES", digit(photoProbes)},
+        {"TERRAY_BILINEAR", digit(bilinear)},
+        {"TERRAY_CURVED", digit(curved)},
+        {"TERRAY_SKY", digit(sky)},
+        {"TERRAY_AIR", digit(air)},
         {"TERRAY_SRGB_COLOUR", digit(!linearColour)},
     };
 }

@@ -18,6 +18,8 @@ struct FeatureSet {
     bool photoProbes = false;  ///< TERRAY_PHOTO_PROBES: anisotropic filtering in the shader
     bool bilinear = false;     ///< TERRAY_BILINEAR: patches between sample centres, where samples are magnified
     bool curved = false;       ///< TERRAY_CURVED: rays bent over a curved earth
+    bool sky = false;  ///< TERRAY_SKY: the sky of the sun's elevation and the light that comes with it (SkyTable)
+    bool air = false;  ///< TERRAY_AIR: aerial perspective
 
     auto operator<=>(const FeatureSet&) const = default;
 

@@ -32,6 +32,8 @@ interop::FrameParameters frameParameters(const View& view, const RenderOptions& 
                            linearFromSrgb(kNeutralGround[2]), 1);
     const EarthCurvature earth = view.earth.value_or(EarthCurvature());
     out.bend = pack({earth.xx, earth.xy, earth.yy}, 0);
+    out.air = glm::vec4(options.visualRange.value_or(Metres(0)).value(), view.eye.z / view.exaggeration,
+                        1 / view.exaggeration, 0);
     return out;
 }
 
@@ -57,7 +59,8 @@ std::string_view name(Launch launch) {
 }
 
 TerrainRenderer::TerrainRenderer(const ShaderLibrary& shaders, const Tiling& tiling)
-    : tiling_(tiling),
+    : shaders_(shaders),
+      tiling_(tiling),
       softwareRasteriser_(isSoftwareRasteriser()),
       rasterLaunch_(shaders),
       computeLaunch_(shaders),
@@ -109,6 +112,19 @@ void TerrainRenderer::uploadFrame(const View& view, const RenderOptions& options
     glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_FRAME, frameBuffer_.name());
 }
 
+/// Before anything else of the frame is bound: the table's passes use the same places.
+void TerrainRenderer::makeSky(const View& view, const RenderOptions& options) {
+    if (!options.sky) {
+        sky_.reset();
+        return;
+    }
+    SkyTable::Options wanted{.airlight = options.visualRange.has_value()};
+    wanted.visualRange = options.visualRange.value_or(wanted.visualRange);
+    if (!sky_ || sky_->options() != wanted) sky_ = std::make_unique<SkyTable>(shaders_, wanted);
+    const double sunSine = std::clamp(glm::normalize(options.sunDirection).z, -1.0, 1.0);
+    sky_->update({.eyeHeight = Metres(view.eye.z / view.exaggeration), .sunElevation = Radians(std::asin(sunSine))});
+}
+
 void TerrainRenderer::bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy) {
     glBindTextureUnit(TERRAY_UNIT_HEIGHTS, tiles.heightTexture());
     glBindTextureUnit(TERRAY_UNIT_HIT, targets.hit.name());
@@ -118,6 +134,7 @@ void TerrainRenderer::bindTextures(const FrameTargets& targets, const GpuTiles& 
         glBindTextureUnit(TERRAY_UNIT_PHOTO, tiles.imageryTexture());
         glBindSampler(TERRAY_UNIT_PHOTO, photoSampler_.name());
     }
+    if (sky_) sky_->bind();
 }
 
 void TerrainRenderer::draw(const CastFrame& frame, Launch launch) {
@@ -157,6 +174,8 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
                              const RenderOptions& options, FrameTargets& targets, GpuTimer* timer) {
     TERRAY_CHECK_OP(view.width, ==, targets.width());
     TERRAY_CHECK_OP(view.height, ==, targets.height());
+    if (timer != nullptr && options.sky) timer->enter(GpuPass::resolve);
+    makeSky(view, options);
     describeNodes(view, nodes, tiles, options.surface);
     uploadFrame(view, options);
 
@@ -165,6 +184,8 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
                            (options.photoFilter == PhotoFilter::probes || softwareRasteriser_);
     features.bilinear = bilinearNodes_ > 0;
     features.curved = view.earth.has_value();
+    features.sky = options.sky;
+    features.air = options.visualRange.has_value();
     glViewport(0, 0, view.width, view.height);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 
@@ -176,12 +197,14 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     draw(frame, launch);
 
     glBindSampler(TERRAY_UNIT_PHOTO, 0);
+    glBindSampler(TERRAY_UNIT_SKY, 0);
+    glBindSampler(TERRAY_UNIT_AIR, 0);
     if (features.statistics) glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 uint64_t TerrainRenderer::bufferBytes() const {
     return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) +
-           RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes();
+           RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes() + (sky_ ? sky_->bytes() : 0);
 }
 
 }  // namespace terray

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -11,8 +12,10 @@
 #include "client/render/compute_launch.h"
 #include "client/render/gpu_tiles.h"
 #include "client/render/raster_launch.h"
+#include "client/render/sky_table.h"
 #include "common/draw_node.h"
 #include "common/tiling.h"
+#include "common/units.h"
 
 namespace terray {
 
@@ -49,6 +52,11 @@ struct RenderOptions {
     Launch launch = Launch::raster;
     bool occlusion = true;  ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
+    /// The sky of the sun's elevation, and its light on the ground; off: a gradient, and light as under a sun at 40
+    /// degrees. Heights count from the sea (z = 0).
+    bool sky = false;
+    /// Aerial perspective: how far a black mountain at sea level is still told from the sky. None: clear as glass.
+    std::optional<Metres> visualRange;
 };
 
 /// Draws lists of nodes by ray casting (paper 001, section 3): a march of each pixel's ray through the nodes, front to
@@ -80,7 +88,7 @@ class TerrainRenderer {
     /// Of the last frame.
     [[nodiscard]] size_t bilinearNodes() const { return bilinearNodes_; }
 
-    /// Bytes of the node buffer and the like.
+    /// Bytes of the node buffer, the sky's table and the like.
     [[nodiscard]] uint64_t bufferBytes() const;
 
   private:
@@ -88,8 +96,10 @@ class TerrainRenderer {
     void draw(const CastFrame& frame, Launch launch);
     void describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles, Surface surface);
     void uploadFrame(const View& view, const RenderOptions& options);
+    void makeSky(const View& view, const RenderOptions& options);
     void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
 
+    const ShaderLibrary& shaders_;
     Tiling tiling_;
     bool softwareRasteriser_;
     RasterLaunch rasterLaunch_;
@@ -100,6 +110,7 @@ class TerrainRenderer {
     GlBuffer nodeBuffer_;
     GlBuffer frameBuffer_;
     GlSampler photoSampler_;
+    std::unique_ptr<SkyTable> sky_;  ///< while RenderOptions::sky is on
     uint64_t nodeCapacity_ = 0;
 };
 

@@ -13,10 +13,12 @@
 
 namespace terray::mathf {
 using real = float;
-using glm::abs, glm::floor, glm::length, glm::max, glm::min, glm::sqrt;
+using glm::abs, glm::exp, glm::floor, glm::length, glm::max, glm::min, glm::sqrt;
 using ivec2 = glm::ivec2;
 using vec2 = glm::vec<2, real>;
 using vec3 = glm::vec<3, real>;
+#include "math/air.glsl"
+#include "math/atmosphere.glsl"
 #include "math/bend.glsl"
 #include "math/box.glsl"
 #include "math/cell_walk.glsl"
@@ -27,6 +29,8 @@ using vec3 = glm::vec<3, real>;
 }  // namespace terray::mathf
 
 #undef TERRAY_MATH_PORTABLE
+#undef TERRAY_MATH_AIR
+#undef TERRAY_MATH_ATMOSPHERE
 #undef TERRAY_MATH_BEND
 #undef TERRAY_MATH_BOX
 #undef TERRAY_MATH_CELL_WALK
@@ -37,10 +41,12 @@ using vec3 = glm::vec<3, real>;
 
 namespace terray::mathd {
 using real = double;
-using glm::abs, glm::floor, glm::length, glm::max, glm::min, glm::sqrt;
+using glm::abs, glm::exp, glm::floor, glm::length, glm::max, glm::min, glm::sqrt;
 using ivec2 = glm::ivec2;
 using vec2 = glm::vec<2, real>;
 using vec3 = glm::vec<3, real>;
+#include "math/air.glsl"
+#include "math/atmosphere.glsl"
 #include "math/bend.glsl"
 #include "math/box.glsl"
 #include "math/cell_walk.glsl"

@@ -73,6 +73,19 @@ TEST_F(LaunchTest, BothDrawTheSamePictureOverASmallEarth) {
     EXPECT_GT(ground, 10'000);
 }
 
+TEST_F(LaunchTest, BothDrawTheSameSkyAndAir) {
+    const ComputedDataset dataset(1024, 5, 23);
+    EngineOptions options = inspectedOptions();
+    options.features.signalSky = false;
+    options.render.visualRange = Metres(30000);
+    for (const bool sky : {false, true}) {
+        options.render.sky = sky;
+        const auto raster = engineWith(dataset.source(), Launch::raster, options);
+        const auto compute = engineWith(dataset.source(), Launch::compute, options);
+        EXPECT_GT(expectSame(*raster, *compute, cameraAt({3000, 3000, 2500}, 120, -20, 80)), 1000) << sky;
+    }
+}
+
 TEST_F(LaunchTest, BothDrawTheSamePictureWithoutTheIdPass) {
     const ComputedDataset dataset(1024, 5, 22);
     EngineOptions options = inspectedOptions();

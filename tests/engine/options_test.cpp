@@ -79,6 +79,24 @@ TEST(EngineOptions, TheSunStandsWhereItIsPut) {
     expectNear(sunDirection("12,90"), {0, 0, 1});
 }
 
+TEST(EngineOptions, TheSunHasOnePlace) {
+    const EngineOptions options = parsed({"--sun-time", "2026-06-21T14:00+02:00"});
+    ASSERT_TRUE(options.sunTime.has_value());
+    EXPECT_EQ(*options.sunTime, parseUtcTime("2026-06-21T12:00Z").value());
+    EXPECT_FALSE(parsed({"--sun", "10,20"}).sunTime.has_value());
+    EXPECT_EQ(refusal({"--sun", "10,20", "--sun-time", "2026-06-21T12:00Z"}), ExitCode::usage);
+}
+
+TEST(EngineOptions, SkyAndAirAreOffUnlessAskedFor) {
+    EXPECT_FALSE(parsed({}).render.sky);
+    EXPECT_FALSE(parsed({}).render.visualRange.has_value());
+    EXPECT_TRUE(parsed({"--sky", "physical"}).render.sky);
+    EXPECT_FALSE(parsed({"--sky", "gradient"}).render.sky);
+    EXPECT_EQ(parsed({"--visual-range", "80000"}).render.visualRange, Metres(80000));
+    EXPECT_EQ(parsed({"--visual-range", "1e5"}).render.visualRange, Metres(100000));
+    EXPECT_FALSE(parsed({"--visual-range", "off"}).render.visualRange.has_value());
+}
+
 TEST(EngineOptions, OutOfRangeIsAUsageError) {
     for (const auto& arguments : std::vector<std::vector<std::string>>{{"--tolerance", "0"},
                                                                        {"--tolerance", "-1"},
@@ -94,6 +112,12 @@ TEST(EngineOptions, OutOfRangeIsAUsageError) {
                                                                        {"--sun", "10,91"},
                                                                        {"--sun", "10,20,30"},
                                                                        {"--sun", "north,20"},
+                                                                       {"--sun-time", "noon"},
+                                                                       {"--sun-time", "2026-06-21T12:00"},
+                                                                       {"--sky", "blue"},
+                                                                       {"--visual-range", "999"},
+                                                                       {"--visual-range", "300001"},
+                                                                       {"--visual-range", "far"},
                                                                        {"--host-memory", "much"}})
         EXPECT_EQ(refusal(arguments), ExitCode::usage) << arguments[0] << " " << arguments[1];
 }

@@ -13,11 +13,17 @@ struct Named {
     const char* define;
 };
 constexpr Named kFeatures[] = {
-    {&FeatureSet::imagery, "TERRAY_IMAGERY"},          {&FeatureSet::statistics, "TERRAY_STATISTICS"},
-    {&FeatureSet::normals, "TERRAY_NORMALS"},          {&FeatureSet::signalSky, "TERRAY_SIGNAL_SKY"},
-    {&FeatureSet::occlusion, "TERRAY_OCCLUSION"},      {&FeatureSet::photoProbes, "TERRAY_PHOTO_PROBES"},
-    {&FeatureSet::bilinear, "TERRAY_BILINEAR"},        {&FeatureSet::curved, "TERRAY_CURVED"},
+    {&FeatureSet::imagery, "TERRAY_IMAGERY"},
+    {&FeatureSet::statistics, "TERRAY_STATISTICS"},
+    {&FeatureSet::normals, "TERRAY_NORMALS"},
+    {&FeatureSet::signalSky, "TERRAY_SIGNAL_SKY"},
+    {&FeatureSet::occlusion, "TERRAY_OCCLUSION"},
+    {&FeatureSet::photoProbes, "TERRAY_PHOTO_PROBES"},
+    {&FeatureSet::bilinear, "TERRAY_BILINEAR"},
+    {&FeatureSet::curved, "TERRAY_CURVED"},
     {&FeatureSet::linearColour, "TERRAY_SRGB_COLOUR"},
+    {&FeatureSet::sky, "TERRAY_SKY"},
+    {&FeatureSet::air, "TERRAY_AIR"},
 };
 static_assert(std::size(kFeatures) == sizeof(FeatureSet), "a new feature joins these tests");
 
@@ -55,6 +61,7 @@ TEST(FeatureSet, EachDefineSaysItsOwnFeature) {
 TEST(FeatureSet, MarchAndResolveIgnoreWhatTheyDoNotUse) {
     FeatureSet lookOnly;
     lookOnly.imagery = lookOnly.normals = lookOnly.signalSky = lookOnly.photoProbes = lookOnly.linearColour = true;
+    lookOnly.sky = lookOnly.air = true;
     EXPECT_EQ(lookOnly.marching(), FeatureSet());
     FeatureSet marchOnly;
     marchOnly.statistics = marchOnly.occlusion = marchOnly.bilinear = marchOnly.curved = true;

@@ -34,6 +34,21 @@ std::set<std::string> uniformsOf(const GlProgram& program) {
 
 using Names = std::set<std::string>;
 
+/// Names of the buffers that a program reads, uniform ones and others.
+Names buffersOf(const GlProgram& program) {
+    Names names;
+    for (const GLenum kind : {GL_UNIFORM_BLOCK, GL_SHADER_STORAGE_BLOCK}) {
+        GLint count = 0;
+        glGetProgramInterfaceiv(program.name(), kind, GL_ACTIVE_RESOURCES, &count);
+        for (GLint i = 0; i < count; ++i) {
+            std::array<char, 64> name{};
+            glGetProgramResourceName(program.name(), kind, static_cast<GLuint>(i), name.size(), nullptr, name.data());
+            names.insert(name.data());
+        }
+    }
+    return names;
+}
+
 class PayForUse : public GlTest {
   protected:
     Names uniforms(const std::vector<std::string>& stages, const FeatureSet& features) {
@@ -66,8 +81,32 @@ TEST_F(PayForUse, PhotosAreReadOnlyWithImagery) {
     EXPECT_EQ(uniforms({"screen.vert", "resolve.frag"}, {.imagery = true, .photoProbes = true}), withPhotos);
 }
 
+TEST_F(PayForUse, SkyAndAirAreReadOnlyWhenTheyAreOn) {
+    const Names bare = {"heightCodes", "hits", "hitNodes"};
+    const Names frame = {"FrameBuffer", "NodeBuffer"};
+    const auto with = [](Names names, const char* name) {
+        names.insert(name);
+        return names;
+    };
+    for (const std::vector<std::string>& stages :
+         {std::vector<std::string>{"screen.vert", "resolve.frag"}, std::vector<std::string>{"resolve.comp"}}) {
+        const auto program = [&](const FeatureSet& features) { return shaders_.require(stages, features.defines()); };
+        Names own = uniformsOf(program({}));
+        own.erase("colourImage");  // of the compute launch
+        EXPECT_EQ(own, bare);
+        EXPECT_EQ(buffersOf(program({})), frame);
+        // Air alone is arithmetic; the sky has a table, and both together one of air by distance.
+        EXPECT_EQ(uniformsOf(program({.air = true})), uniformsOf(program({})));
+        EXPECT_EQ(buffersOf(program({.air = true})), frame);
+        EXPECT_EQ(uniformsOf(program({.sky = true})), with(uniformsOf(program({})), "skyTable"));
+        EXPECT_EQ(buffersOf(program({.sky = true})), with(frame, "SkyBuffer"));
+        EXPECT_EQ(uniformsOf(program({.sky = true, .air = true})),
+                  with(with(uniformsOf(program({})), "skyTable"), "airTable"));
+    }
+}
+
 TEST_F(PayForUse, EveryCombinationOfFeaturesCompiles) {
-    for (int bits = 0; bits < 1 << 9; ++bits) {
+    for (int bits = 0; bits < 1 << 11; ++bits) {
         FeatureSet features{.imagery = (bits & 1) != 0,
                             .statistics = (bits & 2) != 0,
                             .normals = (bits & 4) != 0,
@@ -76,7 +115,9 @@ TEST_F(PayForUse, EveryCombinationOfFeaturesCompiles) {
                             .occlusion = (bits & 32) != 0,
                             .photoProbes = (bits & 64) != 0,
                             .bilinear = (bits & 128) != 0,
-                            .curved = (bits & 256) != 0};
+                            .curved = (bits & 256) != 0,
+                            .sky = (bits & 512) != 0,
+                            .air = (bits & 1024) != 0};
         // What a program does not depend on makes no new program.
         if (features == features.marching()) {
             EXPECT_FALSE(uniforms({"box.vert", "march.frag"}, features).empty());
