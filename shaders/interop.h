@@ -20,16 +20,21 @@ using uvec4 = glm::uvec4;
 #define TERRAY_UNIT_NODE 4     // usampler2D: node index + 1
 #define TERRAY_UNIT_SKY 5      // sampler2D: the sky by direction, see SkyTable
 #define TERRAY_UNIT_AIR 6      // sampler3D: the air by direction and distance, see SkyTable
+#define TERRAY_UNIT_SUN_LIGHT 7  // sampler2D: part of the sun that the ground sees
 #define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
 #define TERRAY_IMAGE_HIT 1     // image2D rgba32f, compute launch
 #define TERRAY_IMAGE_NODE 2    // uimage2D r32ui, compute launch
 #define TERRAY_IMAGE_COLOUR 3  // image2D rgba8 (sRGB bytes) or rgba16f (linear), compute launch
 #define TERRAY_IMAGE_NORMAL 4  // image2D rgba32f, compute launch
+#define TERRAY_IMAGE_SUN_LIGHT 5     // image2D r8, compute launch
+#define TERRAY_IMAGE_SHADOW_STEPS 6  // uimage2D r32ui
 #define TERRAY_BUFFER_NODES 0  // SSBO: NodeParameters[]
 #define TERRAY_BUFFER_FRAME 1  // UBO: FrameParameters
 #define TERRAY_BUFFER_BOXES 2  // SSBO: vec4[], of each node the pixels that its box covers; compute launch
 #define TERRAY_BUFFER_BINS 3   // SSBO: uint[], of each square of pixels a bit for each node; compute launch
 #define TERRAY_BUFFER_SKY 6    // SSBO: SkyParameters
+#define TERRAY_BUFFER_SHADOW_CELLS 4  // SSBO: ShadowCell[]
+#define TERRAY_BUFFER_SHADOW 5        // UBO: ShadowParameters
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
 
 // Compute launch: pixels along the side of a work group, and of the square of pixels that nodes are binned to.
@@ -50,6 +55,8 @@ using uvec4 = glm::uvec4;
 
 // A slot that is none: NodeParameters::source.y of a node without photo.
 #define TERRAY_NO_SLOT 0xffffffffu
+// A draw node that is none: ShadowCell::source.x of a cell that is split.
+#define TERRAY_NO_NODE 0xffffffffu
 
 // One draw node. "Tile frame": of the node's height source tile, x east and y south in its texels (0..512 over the
 // core), z in its height codes, so that a column's top is exactly its code.
@@ -57,7 +64,7 @@ struct NodeParameters {
     vec4 eye;      // xyz: the eye in the tile frame; w: metres per texel
     vec4 right;    // xyz: half the picture's width at view depth 1 m, in the tile frame; w: metres per code, drawn
     vec4 up;       // xyz: half the picture's height at view depth 1 m, in the tile frame; w: raster margin, metres
-    vec4 forward;  // xyz: the view axis, 1 m, in the tile frame
+    vec4 forward;  // xyz: the view axis, 1 m, in the tile frame; w: geometric error of the height source, metres
     vec4 boxMin;   // xyz: the cell's box in the tile frame; w: curved earth: what the seen box needs more, metres down
     vec4 boxMax;   // likewise; w: metres up
     vec4 photo;    // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
@@ -91,8 +98,25 @@ struct SkyParameters {
     vec4 skyLight[TERRAY_SKY_LIGHTS];  // rgb: on level ground
 };
 
+// One cell of the tree that shadow rays walk; the first is the root.
+struct ShadowCell {
+    uvec4 children;  // cells: north-west, north-east, south-west, south-east; 0: nothing there
+    uvec4 source;    // x: draw node of a leaf, or TERRAY_NO_NODE
+    vec4 bounds;     // x: the highest of its ground, metres above the eye
+};
+
+// The shadow rays of one frame. Finest cell: of the deepest level among the draw nodes.
+struct ShadowParameters {
+    uvec4 grid;  // xy: column and row of the finest cell that the eye is in, two's complement; z: levels below the root
+    vec4 place;  // xy: the eye within that cell, 0 .. 1, x east, y south; z: its side, metres; w: the highest of all
+                 // ground, metres above the eye
+    vec4 sun;    // x: tangent of half the sun's angular diameter; y: rays for each pixel
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
+static_assert(sizeof(ShadowCell) == 3 * 16);
+static_assert(sizeof(ShadowParameters) == 3 * 16);
 static_assert(sizeof(NodeParameters) == 8 * 16);
 static_assert(sizeof(FrameParameters) == 8 * 16);
 }  // namespace terray::interop

@@ -26,9 +26,9 @@ Light lightAt(float height) {
 Light lightAt(float height) { return Light(kSunLight, kSkyLight); }
 #endif
 
-// Sky light falls off to half on a vertical wall, which sees half of the sky.
-vec3 lit(vec3 colour, vec3 normal, vec3 sun, Light light) {
-    return colour * (light.sun * max(dot(normal, sun), 0.0) + light.sky * (0.5 + 0.5 * normal.z));
+// sunPart: of the sun that is seen, 0 .. 1. Sky light falls off to half on a vertical wall, which sees half of the sky.
+vec3 lit(vec3 colour, vec3 normal, vec3 sun, Light light, float sunPart) {
+    return colour * (light.sun * (sunPart * max(dot(normal, sun), 0.0)) + light.sky * (0.5 + 0.5 * normal.z));
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include "photo.glsl"
 #include "sky.glsl"
 #include "srgb.glsl"
+#include "sun_light.glsl"
 #include "surface.glsl"
 
 layout(binding = TERRAY_UNIT_HIT) uniform sampler2D hits;
@@ -33,7 +34,7 @@ Resolved resolvePixel(ivec2 pixel) {
         resolved.normal = normalize(vec3(-rise.x, rise.y, 1.0));
         vec3 ground = groundColour(node, hit.xy, seenSlope(node, hit.xy, slope), hit.w, position);
         float height = frame.air.y + (hit.z - node.eye.z) * (node.right.w * frame.air.z);
-        vec3 shaded = lit(ground, resolved.normal, frame.sun.xyz, lightAt(height));
+        vec3 shaded = lit(ground, resolved.normal, frame.sun.xyz, lightAt(height), sunLightAt(pixel));
         resolved.colour = throughAir(shaded, direction, hit.w * length(ray), height);
     }
     resolved.colour = storedColour(resolved.colour, pixel);

@@ -60,6 +60,7 @@ void addTiles(std::vector<Column>& columns) {
         add(name, [counter](const auto& f) { return count(f.report.pager.*counter - f.pagerBefore.*counter); });
     };
     add("nodes", [](const auto& f) { return count(f.report.nodes); });
+    add("casters", [](const auto& f) { return count(f.report.casters); });
     add("bilinear_nodes", [](const auto& f) { return count(f.report.bilinearNodes); });
     add("stand_ins", [](const auto& f) { return count(f.report.standIns); });
     add("wanted", [](const auto& f) { return count(f.report.wanted); });

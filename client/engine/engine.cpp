@@ -7,6 +7,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
 #include "client/engine/sun_clock.h"
@@ -93,6 +95,9 @@ struct Engine::State {
 };
 
 void Engine::State::selectAndPin() {
+    const glm::dvec3 sun = glm::normalize(options.render.sunDirection);
+    options.selection.shadowsFrom.reset();
+    if (options.render.shadows && sun.z > 0) options.selection.shadowsFrom = sun;
     selection = select(resident.tree(), view, options.selection);
     resident.pin(selection);
 }
@@ -173,11 +178,12 @@ void Engine::State::waitForArrivals(const std::vector<TileRequest>& requests) {
 }
 
 void Engine::State::render() {
-    renderer.render(view, selection.nodes, resident.gpu(), options.render, targets, &timer);
+    renderer.render(view, selection.nodes, selection.casters, resident.gpu(), options.render, targets, &timer);
 }
 
 void Engine::State::fillReport() {
     report.nodes = selection.nodes.size();
+    report.casters = selection.casters.size();
     report.bilinearNodes = renderer.bilinearNodes();
     for (const DrawNode& node : selection.nodes)
         if (!node.heightsExact || !node.imageryExact) ++report.standIns;

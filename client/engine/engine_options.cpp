@@ -135,6 +135,10 @@ void EngineCommandLine::declare(CommandLine& line) {
                 "11 km at 720 rows, and only with a coordinate system (auto)");
     line.option("--refraction", refraction_, "K",
                 "by which part of the earth's curvature air bends light, -5 to 0.99; 0: none (0.13)");
+    line.option("--shadows", shadows_, "on|off", "cast by the ground, tiles outside the picture included (off)");
+    line.option("--sun-diameter", sunDiameter_, "DEGREES",
+                "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
+    line.option("--shadow-rays", shadowRays_, "N", "of each pixel when the sun has a diameter, 1 to 64 (8)");
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
 }
@@ -147,6 +151,9 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--exaggeration", exaggeration_, kLeastExaggeration, kGreatestExaggeration);
     requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
     requireRange("--refraction", refraction_, -5, 0.99);
+    requireRange("--sun-diameter", sunDiameter_, 0, 20);
+    requireRange("--shadow-rays", static_cast<double>(shadowRays_), 1, 64);
+    if (shadows_ != "on" && shadows_ != "off") refuse("--shadows", shadows_, "on or off");
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (sky_ != "gradient" && sky_ != "physical") refuse("--sky", sky_, "gradient or physical");
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
@@ -165,6 +172,10 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.render.occlusion = occlusion_ == "on";
     options.render.surface = surfaceNamed(surface_);
     options.earth = {.shape = earthShapeNamed(earth_), .refraction = refraction_};
+    if (shadows_ == "on") {
+        options.render.shadows = ShadowOptions{.sunDiameter = radiansFromDegrees(sunDiameter_).value(),
+                                               .rays = static_cast<int>(shadowRays_)};
+    }
     options.pager.hostBudgetBytes = hostMemory_;
     options.pager.decodeThreads = static_cast<int>(decodeThreads_);
     options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;

@@ -49,6 +49,9 @@ class EngineCommandLine {
     double exaggeration_ = EngineOptions().exaggeration;
     std::string earth_ = "auto";
     double refraction_ = EarthOptions().refraction;
+    std::string shadows_ = "off";
+    double sunDiameter_ = 0;
+    int64_t shadowRays_ = ShadowOptions().rays;
     std::string shaders_;
     bool signalSky_ = false;
 };

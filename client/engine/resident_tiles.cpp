@@ -87,7 +87,12 @@ void ResidentTiles::beginFrame() {
 }
 
 void ResidentTiles::pin(const Selection& selection) {
-    for (const DrawNode& node : selection.nodes) {
+    pin(selection.nodes);
+    pin(selection.casters);
+}
+
+void ResidentTiles::pin(const std::vector<DrawNode>& nodes) {
+    for (const DrawNode& node : nodes) {
         pinnedHeights_.insert(node.heightTile);
         if (node.imageryTile) pinnedImagery_.insert(*node.imageryTile);
     }
@@ -98,7 +103,7 @@ void ResidentTiles::pin(const Selection& selection) {
         }
     };
     // In the order of the nodes, so that the least recently used tile is the same one in every run.
-    for (const DrawNode& node : selection.nodes) {
+    for (const DrawNode& node : nodes) {
         touchAncestors(
             node.heightTile,
             [&](const TileId& id) {
@@ -113,7 +118,7 @@ void ResidentTiles::pin(const Selection& selection) {
                 },
                 [&](const TileId& id) { gpu_.touchImagery(id); });
     }
-    for (const DrawNode& node : selection.nodes) {
+    for (const DrawNode& node : nodes) {
         gpu_.pinHeights(node.heightTile);
         if (node.imageryTile) gpu_.pinImagery(*node.imageryTile);
     }

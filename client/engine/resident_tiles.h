@@ -56,6 +56,7 @@ class ResidentTiles {
     Uploads upload(const std::vector<TileRequest>& wanted, uint64_t budgetBytes, std::vector<TileKey>* uploaded);
 
   private:
+    void pin(const std::vector<DrawNode>& nodes);
     void loadRoots(const TileSource& source);
     void uploadRoot(const LoadedTile& root);
     void learn(const LoadedTile& tile);

@@ -52,6 +52,11 @@ void ComputeLaunch::bin(const CastFrame& frame) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+void ComputeLaunch::dispatchScreen(const GlProgram& program, const View& view) {
+    glUseProgram(program.name());
+    dispatchOverPicture(view, TERRAY_GROUP_SIDE);
+}
+
 void ComputeLaunch::cast(const CastFrame& frame) {
     frame.enter(GpuPass::march);
     bin(frame);
@@ -69,8 +74,7 @@ void ComputeLaunch::resolve(const CastFrame& frame) {
     const bool linear = frame.features.linearColour;
     bindImage(TERRAY_IMAGE_COLOUR, frame.targets.colour, linear ? GL_RGBA16F : GL_RGBA8);
     if (frame.features.normals) bindImage(TERRAY_IMAGE_NORMAL, frame.targets.normal, GL_RGBA32F);
-    glUseProgram(resolvePrograms_.get(frame.features.resolving()).name());
-    dispatchOverPicture(frame.view, TERRAY_GROUP_SIDE);
+    dispatchScreen(resolvePrograms_.get(frame.features.resolving()), frame.view);
     // What follows may sample, draw over, copy or read the picture.
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }

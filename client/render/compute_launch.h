@@ -25,6 +25,8 @@ class ComputeLaunch {
     void cast(const CastFrame& frame);
     /// Fills colour and, with normals, normal. What the resolve shader reads must be bound.
     void resolve(const CastFrame& frame);
+    /// Runs a program whose groups are TERRAY_GROUP_SIDE square over every pixel of the picture.
+    static void dispatchScreen(const GlProgram& program, const View& view);
 
     /// Bytes of the buffers of boxes and bins.
     [[nodiscard]] uint64_t bufferBytes() const { return boxBuffer_.bytes + binBuffer_.bytes; }

@@ -14,7 +14,12 @@ FeatureSet FeatureSet::resolving() const {
             .photoProbes = imagery && photoProbes,
             .curved = imagery && curved,
             .sky = sky,
-            .air = air};
+            .air = air,
+            .shadows = shadows};
+}
+
+FeatureSet FeatureSet::shadowing() const {
+    return {.statistics = statistics, .bilinear = true, .curved = curved, .softSun = softSun};
 }
 
 ShaderDefines FeatureSet::defines() const {
@@ -30,6 +35,8 @@ ShaderDefines FeatureSet::defines() const {
         {"TERRAY_CURVED", digit(curved)},
         {"TERRAY_SKY", digit(sky)},
         {"TERRAY_AIR", digit(air)},
+        {"TERRAY_SHADOWS", digit(shadows)},
+        {"TERRAY_SOFT_SUN", digit(softSun)},
         {"TERRAY_SRGB_COLOUR", digit(!linearColour)},
     };
 }

@@ -18,8 +18,10 @@ struct FeatureSet {
     bool photoProbes = false;  ///< TERRAY_PHOTO_PROBES: anisotropic filtering in the shader
     bool bilinear = false;     ///< TERRAY_BILINEAR: patches between sample centres, where samples are magnified
     bool curved = false;       ///< TERRAY_CURVED: rays bent over a curved earth
-    bool sky = false;  ///< TERRAY_SKY: the sky of the sun's elevation and the light that comes with it (SkyTable)
-    bool air = false;  ///< TERRAY_AIR: aerial perspective
+    bool sky = false;      ///< TERRAY_SKY: the sky of the sun's elevation and the light that comes with it (SkyTable)
+    bool air = false;      ///< TERRAY_AIR: aerial perspective
+    bool shadows = false;  ///< TERRAY_SHADOWS: a pass of rays to the sun, whose answer the resolve pass reads
+    bool softSun = false;  ///< TERRAY_SOFT_SUN: several of them for each pixel, over the sun's disc
 
     auto operator<=>(const FeatureSet&) const = default;
 
@@ -27,6 +29,9 @@ struct FeatureSet {
     [[nodiscard]] FeatureSet marching() const;
     /// What the programs that resolve depend on, likewise.
     [[nodiscard]] FeatureSet resolving() const;
+
+    /// What the programs that cast shadow rays depend on; these rays see patches everywhere.
+    [[nodiscard]] FeatureSet shadowing() const;
 
     /// All defines, each 0 or 1, that any shader of this set is compiled with.
     [[nodiscard]] ShaderDefines defines() const;

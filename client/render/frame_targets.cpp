@@ -95,6 +95,21 @@ const RasterTargets& FrameTargets::raster(bool occlusion) {
     return *raster_;
 }
 
+const ShadowTargets& FrameTargets::shadow() {
+    if (shadow_) return *shadow_;
+    const auto pixels = static_cast<uint64_t>(GridSize{width_, height_}.count());
+    ShadowTargets made;
+    made.sunLight = makeTarget(GL_R8, width_, height_);
+    made.bytes = pixels;
+    if (features_.statistics) {
+        made.steps = makeTarget(GL_R32UI, width_, height_);
+        made.bytes += 4 * pixels;
+    }
+    made.framebuffer = makeTargetFramebuffer("shadow", {made.sunLight.name()}, 0);
+    shadow_ = std::make_unique<ShadowTargets>(std::move(made));
+    return *shadow_;
+}
+
 Grid<std::array<uint8_t, 4>> FrameTargets::readSrgb() const {
     TERRAY_CHECK(format_ == ColourFormat::srgb8);
     auto colours = readTexture<std::array<uint8_t, 4>>(colour, {width_, height_}, GL_RGBA, GL_UNSIGNED_BYTE);
@@ -117,6 +132,16 @@ Grid<uint32_t> FrameTargets::readNodes() const {
 
 Grid<uint32_t> FrameTargets::readSteps() const {
     return readTexture<uint32_t>(steps, {width_, height_}, GL_RED_INTEGER, GL_UNSIGNED_INT);
+}
+
+Grid<uint32_t> FrameTargets::readShadowSteps() const {
+    TERRAY_CHECK(shadow_ != nullptr);
+    return readTexture<uint32_t>(shadow_->steps, {width_, height_}, GL_RED_INTEGER, GL_UNSIGNED_INT);
+}
+
+Grid<float> FrameTargets::readSunLight() const {
+    TERRAY_CHECK(shadow_ != nullptr);
+    return readTexture<float>(shadow_->sunLight, {width_, height_}, GL_RED, GL_FLOAT);
 }
 
 Grid<glm::vec3> FrameTargets::readNormals() const {

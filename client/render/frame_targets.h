@@ -23,6 +23,14 @@ struct RasterTargets {
     uint64_t bytes = 0;
 };
 
+/// What only shadows are drawn into.
+struct ShadowTargets {
+    GlTexture sunLight;         ///< R8: the part of the sun that the ground sees
+    GlTexture steps;            ///< R32UI; none without statistics
+    GlFramebuffer framebuffer;  ///< {sunLight}
+    uint64_t bytes = 0;
+};
+
 /// How colours leave the resolve pass.
 enum class ColourFormat : uint8_t {
     srgb8,        ///< 8-bit sRGB, for PNG and the screen: GL_RGBA8 whose bytes the resolve pass has encoded
@@ -46,7 +54,9 @@ class FrameTargets {
     [[nodiscard]] int height() const { return height_; }
     /// As given; linearColour follows the format.
     [[nodiscard]] const FeatureSet& features() const { return features_; }
-    [[nodiscard]] uint64_t bytes() const { return bytes_ + (raster_ ? raster_->bytes : 0); }
+    [[nodiscard]] uint64_t bytes() const {
+        return bytes_ + (raster_ ? raster_->bytes : 0) + (shadow_ ? shadow_->bytes : 0);
+    }
 
     /// sRGB bytes, alpha 255; needs ColourFormat::srgb8.
     [[nodiscard]] Grid<std::array<uint8_t, 4>> readSrgb() const;
@@ -58,6 +68,10 @@ class FrameTargets {
     [[nodiscard]] Grid<uint32_t> readNodes() const;
     /// Steps of the pixel's ray over all nodes (kStepCountMask), and kOutOfStepsBit. Needs FeatureSet::statistics.
     [[nodiscard]] Grid<uint32_t> readSteps() const;
+    /// Steps of the pixel's shadow rays. Needs FeatureSet::statistics, and that the last frame had shadows.
+    [[nodiscard]] Grid<uint32_t> readShadowSteps() const;
+    /// The part of the sun that each pixel's ground sees, 0 .. 1; 1 for the sky. The last frame must have had shadows.
+    [[nodiscard]] Grid<float> readSunLight() const;
     /// World normals (east, north, up), unit length, 0 where there is sky. Needs FeatureSet::normals.
     [[nodiscard]] Grid<glm::vec3> readNormals() const;
 
@@ -66,6 +80,9 @@ class FrameTargets {
     /// Made on first use, and again when `occlusion` changes; kept until dropRaster().
     const RasterTargets& raster(bool occlusion);
     void dropRaster() { raster_.reset(); }
+    /// Made on first use; kept until dropShadow().
+    const ShadowTargets& shadow();
+    void dropShadow() { shadow_.reset(); }
 
   private:
     int width_;
@@ -74,6 +91,7 @@ class FrameTargets {
     ColourFormat format_;
     uint64_t bytes_ = 0;  ///< of what does not depend on the launch
     std::unique_ptr<RasterTargets> raster_;
+    std::unique_ptr<ShadowTargets> shadow_;
 };
 
 }  // namespace terray

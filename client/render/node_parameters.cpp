@@ -129,14 +129,15 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     out.eye = withW(eye, spacing);
     out.right = withW(tileDirection(view.right * view.tanHalfWidth()), step);
     out.up = withW(tileDirection(view.up * view.tanHalfHeight), marginMetres);
-    out.forward = withW(tileDirection(view.forward), 0);
+    out.forward = withW(tileDirection(view.forward), view.exaggeration * heights.record.error);
 
     // Half a code above and below, so that rounding the bounds to float cuts off no surface.
     const SubSquare cell = subSquare(node.cell, node.heightTile);
     const Bulge bulge = view.earth ? bulgeOver(*view.earth, tiling.tileSide(node.cell.level)) : Bulge();
     out.boxMin = withW({cell.corner, codeOf(node.minHeight) - 0.5}, bulge.down);
-    const double top =
-        source.bilinear ? heights.maxima.over(cell.corner.x, cell.corner.y, cell.side) : codeOf(node.maxHeight);
+    const double patchTop = heights.maxima.over(cell.corner.x, cell.corner.y, cell.side);
+    double top = source.bilinear ? patchTop : codeOf(node.maxHeight);
+    if (source.castsShadow) top = std::max(top, patchTop);
     out.boxMax = withW({cell.corner + cell.side, top + 0.5}, bulge.up);
 
     if (node.imageryTile && source.photoSlot != TERRAY_NO_SLOT) {

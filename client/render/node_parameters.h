@@ -13,6 +13,7 @@ struct NodeSource {
     const ResidentHeights& heights;
     uint32_t photoSlot = TERRAY_NO_SLOT;  ///< layer of the node's imagery tile
     bool bilinear = false;                ///< the surface: patches between sample centres, or columns
+    bool castsShadow = false;             ///< shadow rays see patches whatever the surface: the box bounds them too
 };
 
 /// A node as the shaders see it: eye, view axes and box in the tile frame of its height source (see shaders/interop.h).

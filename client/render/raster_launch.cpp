@@ -85,9 +85,14 @@ void RasterLaunch::cast(const CastFrame& frame) {
 
 void RasterLaunch::resolve(const CastFrame& frame) {
     frame.enter(GpuPass::resolve);
+    drawScreen(resolvePrograms_.get(frame.features.resolving()),
+               frame.targets.raster(frame.features.occlusion).resolveFramebuffer);
+}
+
+void RasterLaunch::drawScreen(const GlProgram& program, const GlFramebuffer& framebuffer) {
     glBindVertexArray(vertexArray_.name());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame.targets.raster(frame.features.occlusion).resolveFramebuffer.name());
-    glUseProgram(resolvePrograms_.get(frame.features.resolving()).name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
+    glUseProgram(program.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }

@@ -20,6 +20,8 @@ class RasterLaunch {
     void cast(const CastFrame& frame);
     /// Fills colour and, with normals, normal. What the resolve shader reads must be bound.
     void resolve(const CastFrame& frame);
+    /// Runs a program over every pixel of a framebuffer.
+    void drawScreen(const GlProgram& program, const GlFramebuffer& framebuffer);
 
     [[nodiscard]] static uint64_t bufferBytes();
 

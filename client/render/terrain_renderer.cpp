@@ -75,9 +75,7 @@ TerrainRenderer::TerrainRenderer(const ShaderLibrary& shaders, const Tiling& til
 }
 
 void TerrainRenderer::describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
-                                    Surface surface) {
-    nodes_.clear();
-    bilinearNodes_ = 0;
+                                    const RenderOptions& options) {
     for (const DrawNode& node : nodes) {
         const ResidentHeights* heights = tiles.heights(node.heightTile);
         TERRAY_CHECK(heights != nullptr);
@@ -87,9 +85,10 @@ void TerrainRenderer::describeNodes(const View& view, std::span<const DrawNode> 
             TERRAY_CHECK(slot.has_value());
             source.photoSlot = *slot;
         }
-        source.bilinear =
-            surface == Surface::bilinear || (surface == Surface::automatic && magnified(node, tiling_, view));
-        bilinearNodes_ += source.bilinear ? 1 : 0;
+        source.bilinear = options.surface == Surface::bilinear ||
+                          (options.surface == Surface::automatic && magnified(node, tiling_, view));
+        source.castsShadow = options.shadows.has_value();
+        drawn_.push_back(node);
         nodes_.push_back(nodeParameters(node, source, tiling_, view));
     }
 }
@@ -138,12 +137,20 @@ void TerrainRenderer::bindTextures(const FrameTargets& targets, const GpuTiles& 
 }
 
 void TerrainRenderer::draw(const CastFrame& frame, Launch launch) {
-    if (launch == Launch::compute) {
-        computeLaunch_.cast(frame);
-        computeLaunch_.resolve(frame);
-    } else {
+    const bool raster = launch != Launch::compute;
+    if (raster) {
         rasterLaunch_.cast(frame);
+    } else {
+        computeLaunch_.cast(frame);
+    }
+    if (frame.features.shadows) {
+        ShadowScene scene = shadowScene(drawn_, nodes_, tiling_, frame.view);
+        shadowPass_->cast(frame, std::move(scene), shadowOptions_, raster ? &rasterLaunch_ : nullptr);
+    }
+    if (raster) {
         rasterLaunch_.resolve(frame);
+    } else {
+        computeLaunch_.resolve(frame);
     }
 }
 
@@ -170,13 +177,20 @@ void TerrainRenderer::calibrate(CastFrame frame, bool occlusion) {
     calibration_ = result;
 }
 
-void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
-                             const RenderOptions& options, FrameTargets& targets, GpuTimer* timer) {
+void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, std::span<const DrawNode> casters,
+                             const GpuTiles& tiles, const RenderOptions& options, FrameTargets& targets,
+                             GpuTimer* timer) {
     TERRAY_CHECK_OP(view.width, ==, targets.width());
     TERRAY_CHECK_OP(view.height, ==, targets.height());
     if (timer != nullptr && options.sky) timer->enter(GpuPass::resolve);
     makeSky(view, options);
-    describeNodes(view, nodes, tiles, options.surface);
+    drawn_.clear();
+    nodes_.clear();
+    describeNodes(view, nodes, tiles, options);
+    const auto inPicture = std::span(nodes_).first(nodes.size());
+    bilinearNodes_ = static_cast<size_t>(std::ranges::count_if(
+        inPicture, [](const interop::NodeParameters& node) { return (node.source.w & TERRAY_BILINEAR_BIT) != 0; }));
+    if (options.shadows) describeNodes(view, casters, tiles, options);
     uploadFrame(view, options);
 
     FeatureSet features = targets.features();
@@ -186,10 +200,22 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     features.curved = view.earth.has_value();
     features.sky = options.sky;
     features.air = options.visualRange.has_value();
+    // Below the horizon the sun lights nothing, and no ray finds out more.
+    features.shadows = options.shadows.has_value() && options.sunDirection.z > 0;
+    if (features.shadows) {
+        shadowOptions_ = *options.shadows;
+        if (!shadowPass_) shadowPass_ = std::make_unique<ShadowPass>(shaders_);
+    } else {
+        targets.dropShadow();
+    }
     glViewport(0, 0, view.width, view.height);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 
-    CastFrame frame{.view = view, .nodes = nodes_, .features = features, .targets = targets, .timer = timer};
+    CastFrame frame{.view = view,
+                    .nodes = std::span(nodes_).first(nodes.size()),
+                    .features = features,
+                    .targets = targets,
+                    .timer = timer};
     if (options.launch == Launch::automatic && !calibration_) calibrate(frame, options.occlusion);
     const Launch launch = options.launch == Launch::automatic ? calibration_->chosen : options.launch;
     if (launch == Launch::compute) targets.dropRaster();
@@ -204,7 +230,8 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
 
 uint64_t TerrainRenderer::bufferBytes() const {
     return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) +
-           RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes() + (sky_ ? sky_->bytes() : 0);
+           RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes() + (sky_ ? sky_->bytes() : 0) +
+           (shadowPass_ ? shadowPass_->bufferBytes() : 0);
 }
 
 }  // namespace terray

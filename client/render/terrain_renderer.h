@@ -12,6 +12,7 @@
 #include "client/render/compute_launch.h"
 #include "client/render/gpu_tiles.h"
 #include "client/render/raster_launch.h"
+#include "client/render/shadow_pass.h"
 #include "client/render/sky_table.h"
 #include "common/draw_node.h"
 #include "common/tiling.h"
@@ -57,6 +58,7 @@ struct RenderOptions {
     bool sky = false;
     /// Aerial perspective: how far a black mountain at sea level is still told from the sky. None: clear as glass.
     std::optional<Metres> visualRange;
+    std::optional<ShadowOptions> shadows;  ///< none: the sun shines through hills
 };
 
 /// Draws lists of nodes by ray casting (paper 001, section 3): a march of each pixel's ray through the nodes, front to
@@ -69,10 +71,11 @@ class TerrainRenderer {
 
     /// With Launch::automatic the first frame is also the calibration: it is drawn kCalibrationFrames times by each
     /// launch.
-    /// @param nodes  front to back, every tile resident in `tiles` (misuse otherwise)
-    /// @param timer  told which pass runs; may be null
-    void render(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles, const RenderOptions& options,
-                FrameTargets& targets, GpuTimer* timer);
+    /// @param nodes    front to back, every tile resident in `tiles` (misuse otherwise)
+    /// @param casters  outside the picture, for shadow rays alone, likewise resident; no cell overlaps another's
+    /// @param timer    told which pass runs; may be null
+    void render(const View& view, std::span<const DrawNode> nodes, std::span<const DrawNode> casters,
+                const GpuTiles& tiles, const RenderOptions& options, FrameTargets& targets, GpuTimer* timer);
 
     /// What the calibration chose, and in milliseconds why.
     struct Calibration {
@@ -94,7 +97,8 @@ class TerrainRenderer {
   private:
     void calibrate(CastFrame frame, bool occlusion);
     void draw(const CastFrame& frame, Launch launch);
-    void describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles, Surface surface);
+    void describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
+                       const RenderOptions& options);
     void uploadFrame(const View& view, const RenderOptions& options);
     void makeSky(const View& view, const RenderOptions& options);
     void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
@@ -105,7 +109,10 @@ class TerrainRenderer {
     RasterLaunch rasterLaunch_;
     ComputeLaunch computeLaunch_;
     std::optional<Calibration> calibration_;
-    std::vector<interop::NodeParameters> nodes_;  ///< of the last frame
+    std::unique_ptr<ShadowPass> shadowPass_;  ///< from the first frame with shadows on
+    ShadowOptions shadowOptions_;
+    std::vector<DrawNode> drawn_;                 ///< of the last frame: nodes, then casters
+    std::vector<interop::NodeParameters> nodes_;  ///< of these
     size_t bilinearNodes_ = 0;
     GlBuffer nodeBuffer_;
     GlBuffer frameBuffer_;

@@ -25,6 +25,7 @@ struct Choice {
 
 struct Cell {
     TileId id;
+    bool seen = true;  ///< it may be in the picture; else only its shadow may
     Neighbourhood ground;
     Choice heights;
     Choice imagery;
@@ -55,7 +56,8 @@ class Traversal {
           coarsening_(coarsening),
           frustum_(view),
           bounds_(tree),
-          useImagery_(options.useImagery && tree.hasImagery()) {}
+          useImagery_(options.useImagery && tree.hasImagery()),
+          lowest_(seenBoxOf(TileId{}, {bounds_.ofRoot()[4].low, bounds_.ofRoot()[4].low}, tree.tiling(), view).min.z) {}
 
     Selection run();
     /// Whether the traversal was given up because the list had grown far beyond maxNodes.
@@ -65,6 +67,9 @@ class Traversal {
     Shown visit(Cell cell);
     Shown visitChildren(const Cell& cell);
     Shown emit(const Cell& cell, Metres distance);
+    /// Whether a cell is worth a visit; `seen` is set when more than its shadow may be in the picture.
+    bool concerns(const TileId& cell, const HeightRange& heights, bool& seen) const;
+    void request(TileLayer layer, const Cell& cell, Pixels error);
     void chooseHeights(Cell& cell, Metres distance);
     void chooseImagery(Cell& cell, Metres distance);
     std::optional<Cell> childOf(const Cell& cell, uint32_t quadrant) const;
@@ -83,6 +88,7 @@ class Traversal {
     Frustum frustum_;
     GroundBounds bounds_;
     bool useImagery_;
+    double lowest_;  ///< metres: of all ground, as it is seen
     bool overflowed_ = false;
     Selection result_;
 };
@@ -120,7 +126,7 @@ Selection Traversal::run() {
 Shown Traversal::visit(Cell cell) {
     if (overflowed_) return {};
     const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground)};
-    if (!frustum_.mayMeet(seenBoxOf(cell.id, reach, tree_.tiling(), view_))) return {};
+    if (!concerns(cell.id, reach, cell.seen)) return {};
     const HeightRange heights{cell.ground[4].bottom, cell.ground[4].top};
     const Metres distance = distanceTo(seenBoxOf(cell.id, heights, tree_.tiling(), view_), view_.eye);
     chooseHeights(cell, distance);
@@ -128,13 +134,29 @@ Shown Traversal::visit(Cell cell) {
     if (cell.heights.settled && cell.imagery.settled) return emit(cell, distance);
 
     // Split; where that shows nothing finer, draw the one cell instead.
-    const size_t before = result_.nodes.size();
+    const size_t nodesBefore = result_.nodes.size(), castersBefore = result_.casters.size();
     const Shown beneath = visitChildren(cell);
     const Shown own = shownBy(cell);
     const bool finer = beneath.heights > own.heights || beneath.imagery > own.imagery;
-    if (finer || result_.nodes.size() == before) return beneath;
-    result_.nodes.resize(before);
+    const bool nothing = result_.nodes.size() == nodesBefore && result_.casters.size() == castersBefore;
+    if (finer || nothing) return beneath;
+    result_.nodes.resize(nodesBefore);
+    result_.casters.resize(castersBefore);
     return emit(cell, distance);
+}
+
+bool Traversal::concerns(const TileId& cell, const HeightRange& heights, bool& seen) const {
+    const Box box = seenBoxOf(cell, heights, tree_.tiling(), view_);
+    seen = frustum_.mayMeet(box);
+    if (seen || !options_.shadowsFrom) return seen;
+    // A shadow ends at the lowest ground there is.
+    const glm::dvec3& sun = *options_.shadowsFrom;
+    const double length = std::max(box.max.z - lowest_, 0.0) / sun.z;
+    return frustum_.mayMeetShadow(box, -sun, length);
+}
+
+void Traversal::request(TileLayer layer, const Cell& cell, Pixels error) {
+    result_.wanted.push_back({layer, cell.id, cell.seen ? error.value() : error.value() / 2});
 }
 
 Shown Traversal::visitChildren(const Cell& cell) {
@@ -170,12 +192,16 @@ void Traversal::chooseHeights(Cell& cell, Metres distance) {
     if (!fineEnough && !mustLoadFirst) return;
     choice.settled = true;
     choice.exact = own.resident;
-    if (!choice.exact) result_.wanted.push_back({TileLayer::heights, cell.id, standInError.value()});
+    if (!choice.exact) request(TileLayer::heights, cell, standInError);
 }
 
 void Traversal::chooseImagery(Cell& cell, Metres distance) {
     Choice& choice = cell.imagery;
     if (choice.settled) return;
+    if (!cell.seen) {  // a shadow has no colour
+        choice = {.drawn = choice.drawn, .settled = true, .exact = true};
+        return;
+    }
     const auto* own = tree_.imagery(cell.id);  // null only for a root that has not been learnt
     const Pixels standInTexel = texelSide(choice.drawn ? choice.drawn->level : 0, distance);
     if (own != nullptr && own->resident) choice.drawn = cell.id;
@@ -185,7 +211,7 @@ void Traversal::chooseImagery(Cell& cell, Metres distance) {
     if (!fineEnough && !mustLoadFirst) return;
     choice.settled = true;
     choice.exact = own != nullptr && own->resident;
-    if (!choice.exact) result_.wanted.push_back({TileLayer::imagery, cell.id, standInTexel.value()});
+    if (!choice.exact) request(TileLayer::imagery, cell, standInTexel);
 }
 
 Shown Traversal::emit(const Cell& cell, Metres distance) {
@@ -200,9 +226,12 @@ Shown Traversal::emit(const Cell& cell, Metres distance) {
         .heightsExact = cell.heights.settled && cell.heights.exact,
         .imageryExact = cell.imagery.settled && cell.imagery.exact,
     };
-    if (!frustum_.mayMeet(seenBoxOf(cell.id, {node.minHeight, node.maxHeight}, tree_.tiling(), view_))) return {};
-    result_.nodes.push_back(node);
-    overflowed_ = result_.nodes.size() > 4 * options_.maxNodes + 64;  // some may yet be merged, but not that many
+    bool seen = true;
+    if (!concerns(cell.id, {node.minHeight, node.maxHeight}, seen)) return {};
+    (seen ? result_.nodes : result_.casters).push_back(node);
+    if (!seen) result_.casters.back().imageryTile.reset();
+    overflowed_ = result_.nodes.size() + result_.casters.size() >
+                  4 * options_.maxNodes + 64;  // some may yet be merged, but not that many
     return shownBy(cell);
 }
 
@@ -211,7 +240,7 @@ std::optional<Selection> fitting(const TileTree& tree, const View& view, const S
                                  double coarsening) {
     Traversal traversal(tree, view, options, coarsening);
     Selection selection = traversal.run();
-    if (traversal.overflowed() || selection.nodes.size() > options.maxNodes) return {};
+    if (traversal.overflowed() || selection.nodes.size() + selection.casters.size() > options.maxNodes) return {};
     return selection;
 }
 

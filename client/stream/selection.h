@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "client/stream/dataset_source.h"
@@ -34,11 +35,16 @@ namespace terray {
 //
 // Exaggerated (View::exaggeration), boxes and errors are multiplied when frustum and distances are asked; what the tree
 // knows, and what draw nodes say, stays in heights.
+//
+// With shadows, cells outside the picture whose shadow may fall into it are selected too, as casters, by the same
+// criteria of detail as what is seen: a shadow's edge fits what it falls on. Their tiles are asked for at half urgency.
 
 struct SelectionOptions {
     Pixels tolerance{2.0 / 3.0};   ///< of the projected geometric error (paper 001, section 4)
     Pixels imageryTolerance{1.0};  ///< of the projected side of a photo texel
     bool useImagery = true;
+    /// Towards the sun, unit length, z > 0, when shadows are drawn.
+    std::optional<glm::dvec3> shadowsFrom;
     size_t maxNodes = 4096;  ///< the draw list never gets longer; refinement stops, coarse cells remain
 };
 
@@ -52,6 +58,7 @@ struct TileRequest {
 
 struct Selection {
     std::vector<DrawNode> nodes;      ///< front to back
+    std::vector<DrawNode> casters;    ///< outside the picture, casting shadows into it; no imagery; in no useful order
     std::vector<TileRequest> wanted;  ///< most urgent first; ties in a fixed order
     bool limited = false;             ///< maxNodes stopped refinement
     [[nodiscard]] bool complete() const { return wanted.empty(); }

@@ -56,13 +56,18 @@ Frustum::Frustum(const View& view)
               view.tanHalfHeight * view.forward + view.up, view.tanHalfHeight * view.forward - view.up, view.forward} {}
 
 bool Frustum::mayMeet(const Box& box) const {
-    // The corner farthest inside decides; rounding errors, relative to the terms of the sum, must not exclude a box
-    // that touches.
+    return mayMeetShadow(box, glm::dvec3(0), 0);
+}
+
+bool Frustum::mayMeetShadow(const Box& box, const glm::dvec3& away, double length) const {
+    // The corner farthest inside decides, or where its shadow ends; rounding errors, relative to the terms of the sum,
+    // must not exclude a box that touches.
     const glm::dvec3 low = box.min - eye_, high = box.max - eye_;
     for (const glm::dvec3& normal : inward_) {
         const glm::dvec3 terms = glm::max(normal * low, normal * high);
-        const double scale = std::abs(terms.x) + std::abs(terms.y) + std::abs(terms.z);
-        if (terms.x + terms.y + terms.z < -1e-9 * scale) return false;
+        const double further = std::max(glm::dot(normal, away) * length, 0.0);
+        const double scale = std::abs(terms.x) + std::abs(terms.y) + std::abs(terms.z) + further;
+        if (terms.x + terms.y + terms.z + further < -1e-9 * scale) return false;
     }
     return true;
 }

@@ -40,6 +40,8 @@ class Frustum {
     /// Never false for a box that the straight ray of some point of the picture meets; now and then true for one
     /// outside.
     [[nodiscard]] bool mayMeet(const Box& box) const;
+    /// The same of a box's shadow: all places up to `length` metres from the box along `away`, unit length.
+    [[nodiscard]] bool mayMeetShadow(const Box& box, const glm::dvec3& away, double length) const;
 
   private:
     glm::dvec3 eye_;

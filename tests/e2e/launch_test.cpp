@@ -113,7 +113,7 @@ TEST_F(LaunchTest, ThousandsOfNodesAreStillDrawnFrontToBack) {
     many.insert(many.end(), nodes.begin(), nodes.end());
     TerrainRenderer renderer(shaders_, dataset.source().metadata().tiling);
     FrameTargets targets(157, 93, options.features);
-    renderer.render(engine.view(), many, engine.tiles(), {.launch = Launch::compute, .surface = Surface::columns},
+    renderer.render(engine.view(), many, {}, engine.tiles(), {.launch = Launch::compute, .surface = Surface::columns},
                     targets, nullptr);
     const auto drawn = targets.readNodes();
     const auto wanted = engine.targets().readNodes();

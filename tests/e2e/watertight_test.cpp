@@ -238,7 +238,7 @@ TEST_F(Watertight, TheComparisonSeesHolesWhenWallsAreCutShort) {
     for (DrawNode& node : cut) node.minHeight = std::max(node.minHeight, node.maxHeight - 100);
     TerrainRenderer renderer(shaders_, dataset.source().metadata().tiling);
     FrameTargets targets(kWidth, kHeight, inspectedOptions(Surface::columns).features);
-    renderer.render(engine.view(), cut, engine.tiles(), {.surface = Surface::columns}, targets, nullptr);
+    renderer.render(engine.view(), cut, {}, engine.tiles(), {.surface = Surface::columns}, targets, nullptr);
     EXPECT_GT(compare(cut, engine.view(), targets, oracle).holes, 100);
 }
 

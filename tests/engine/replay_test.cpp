@@ -100,8 +100,8 @@ TEST_F(ReplayTest, WritesALineAFrameUnderTheDocumentedHeader) {
 }
 
 TEST_F(ReplayTest, TwoRunsDifferOnlyInTimes) {
-    ASSERT_EQ(replay("a", {"--wait-for-tiles"}), ExitCode::ok);
-    ASSERT_EQ(replay("b", {"--wait-for-tiles"}), ExitCode::ok);
+    ASSERT_EQ(replay("a", {"--wait-for-tiles", "--launch", "raster"}), ExitCode::ok);
+    ASSERT_EQ(replay("b", {"--wait-for-tiles", "--launch", "raster"}), ExitCode::ok);
     const auto a = tableOf(own_ / "a" / "frames.csv");
     const auto b = tableOf(own_ / "b" / "frames.csv");
     for (const auto& [name, values] : a) {

@@ -21,6 +21,8 @@ constexpr Named kFeatures[] = {
     {&FeatureSet::photoProbes, "TERRAY_PHOTO_PROBES"},
     {&FeatureSet::bilinear, "TERRAY_BILINEAR"},
     {&FeatureSet::curved, "TERRAY_CURVED"},
+    {&FeatureSet::shadows, "TERRAY_SHADOWS"},
+    {&FeatureSet::softSun, "TERRAY_SOFT_SUN"},
     {&FeatureSet::linearColour, "TERRAY_SRGB_COLOUR"},
     {&FeatureSet::sky, "TERRAY_SKY"},
     {&FeatureSet::air, "TERRAY_AIR"},
