@@ -135,6 +135,7 @@ void EngineCommandLine::declare(CommandLine& line) {
                 "11 km at 720 rows, and only with a coordinate system (auto)");
     line.option("--refraction", refraction_, "K",
                 "by which part of the earth's curvature air bends light, -5 to 0.99; 0: none (0.13)");
+    line.option("--pyramid", pyramid_, "on|off", "off, to measure it: rays walk from sample to sample (on)");
     line.option("--shadows", shadows_, "on|off", "cast by the ground, tiles outside the picture included (off)");
     line.option("--sun-diameter", sunDiameter_, "DEGREES",
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
@@ -153,6 +154,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--refraction", refraction_, -5, 0.99);
     requireRange("--sun-diameter", sunDiameter_, 0, 20);
     requireRange("--shadow-rays", static_cast<double>(shadowRays_), 1, 64);
+    if (pyramid_ != "on" && pyramid_ != "off") refuse("--pyramid", pyramid_, "on or off");
     if (shadows_ != "on" && shadows_ != "off") refuse("--shadows", shadows_, "on or off");
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (sky_ != "gradient" && sky_ != "physical") refuse("--sky", sky_, "gradient or physical");
@@ -172,6 +174,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.render.occlusion = occlusion_ == "on";
     options.render.surface = surfaceNamed(surface_);
     options.earth = {.shape = earthShapeNamed(earth_), .refraction = refraction_};
+    options.render.pyramid = pyramid_ == "on";
     if (shadows_ == "on") {
         options.render.shadows = ShadowOptions{.sunDiameter = radiansFromDegrees(sunDiameter_).value(),
                                                .rays = static_cast<int>(shadowRays_)};

@@ -49,6 +49,7 @@ class EngineCommandLine {
     double exaggeration_ = EngineOptions().exaggeration;
     std::string earth_ = "auto";
     double refraction_ = EarthOptions().refraction;
+    std::string pyramid_ = "on";
     std::string shadows_ = "off";
     double sunDiameter_ = 0;
     int64_t shadowRays_ = ShadowOptions().rays;

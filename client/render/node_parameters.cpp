@@ -151,7 +151,8 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     // Paper 001, section 3.2: start below the single block that holds the cell, for every ray enters at its box.
     const auto below = static_cast<int>(node.cell.level - node.heightTile.level);
     // Patches are tried from level 1 (shaders/march.glsl).
-    const auto start = static_cast<uint32_t>(std::max(8 - below, source.bilinear ? 1 : 0));
+    const int leaf = source.bilinear ? 1 : 0;
+    const auto start = static_cast<uint32_t>(source.pyramid ? std::max(8 - below, leaf) : leaf);
     out.source = {heights.slot, node.imageryTile ? source.photoSlot : TERRAY_NO_SLOT, node.cell.level,
                   start | (source.bilinear ? TERRAY_BILINEAR_BIT : 0)};
     return out;

@@ -13,6 +13,7 @@ struct NodeSource {
     const ResidentHeights& heights;
     uint32_t photoSlot = TERRAY_NO_SLOT;  ///< layer of the node's imagery tile
     bool bilinear = false;                ///< the surface: patches between sample centres, or columns
+    bool pyramid = true;                  ///< off: every ray walks from sample to sample
     bool castsShadow = false;             ///< shadow rays see patches whatever the surface: the box bounds them too
 };
 

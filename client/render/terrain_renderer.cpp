@@ -87,6 +87,7 @@ void TerrainRenderer::describeNodes(const View& view, std::span<const DrawNode> 
         }
         source.bilinear = options.surface == Surface::bilinear ||
                           (options.surface == Surface::automatic && magnified(node, tiling_, view));
+        source.pyramid = options.pyramid;
         source.castsShadow = options.shadows.has_value();
         drawn_.push_back(node);
         nodes_.push_back(nodeParameters(node, source, tiling_, view));

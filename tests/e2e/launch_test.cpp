@@ -1,6 +1,6 @@
 // Raster and compute launch draw the same picture: node, hit, normal and colour of every pixel.
 
-#include <random>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -124,6 +124,40 @@ TEST_F(LaunchTest, ThousandsOfNodesAreStillDrawnFrontToBack) {
             wrong += drawn.at(x, y) != (node == 0 ? 0 : node + kFloating);
         }
     EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(LaunchTest, ThePyramidSavesStepsAndChangesNothing) {
+    const ComputedDataset dataset(2048, 5, 25);
+    for (const Surface surface : {Surface::columns, Surface::bilinear}) {
+        EngineOptions options = inspectedOptions(surface);
+        const auto with = engineWith(dataset.source(), Launch::raster, options);
+        options.render.pyramid = false;
+        const auto without = engineWith(dataset.source(), Launch::raster, options);
+        const Camera camera = cameraAt({6120, -120, dataset.source().metadata().maxHeight + 50}, 30, -65, 60);
+        with->drawFrame(camera, true);
+        without->drawFrame(camera, true);
+        EXPECT_EQ(raysOutOfSteps(without->targets()), 0);
+        const auto nodes = with->targets().readNodes();
+        const auto others = without->targets().readNodes();
+        const auto hits = with->targets().readHits();
+        const auto otherHits = without->targets().readHits();
+        const auto steps = with->targets().readSteps();
+        const auto otherSteps = without->targets().readSteps();
+        int64_t ground = 0, different = 0, all = 0, allWithout = 0;
+        for (int64_t y = 0; y < nodes.height(); ++y)
+            for (int64_t x = 0; x < nodes.width(); ++x) {
+                const double t = hits.at(x, y).w;
+                ground += nodes.at(x, y) != 0;
+                different += nodes.at(x, y) != others.at(x, y);
+                // Times of entry are rounded on other paths: 2^-20 of the distance.
+                if (nodes.at(x, y) != 0) different += std::abs(t - otherHits.at(x, y).w) > t * 0x1p-20;
+                all += steps.at(x, y);
+                allWithout += otherSteps.at(x, y);
+            }
+        EXPECT_EQ(different, 0) << "of " << ground;
+        EXPECT_GT(ground, 4000);
+        EXPECT_GT(allWithout, 2 * all);
+    }
 }
 
 TEST_F(LaunchTest, AutomaticChoosesTheFasterOfTwoThatItHasTimed) {
