@@ -39,6 +39,11 @@ struct Shown {
 /// Shown::imagery where there is known to be no photo, or none is asked for: nothing can be finer.
 constexpr uint32_t kNoPhoto = std::numeric_limits<uint32_t>::max();
 
+/// How far above a cell the tile lies that its heights are drawn from, unless a deeper one is found.
+uint32_t levelsAbove(const Cell& cell) {
+    return cell.id.level - cell.heights.drawn->level;
+}
+
 /// What a cell shows when it is drawn whole.
 Shown shownBy(const Cell& cell) {
     const Choice& photo = cell.imagery;
@@ -125,7 +130,7 @@ Selection Traversal::run() {
 
 Shown Traversal::visit(Cell cell) {
     if (overflowed_) return {};
-    const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground)};
+    const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground, levelsAbove(cell))};
     if (!concerns(cell.id, reach, cell.seen)) return {};
     const HeightRange heights{cell.ground[4].bottom, cell.ground[4].top};
     const Metres distance = distanceTo(seenBoxOf(cell.id, heights, tree_.tiling(), view_), view_.eye);
@@ -221,7 +226,7 @@ Shown Traversal::emit(const Cell& cell, Metres distance) {
         .heightTile = *cell.heights.drawn,
         .imageryTile = cell.imagery.drawn,
         .minHeight = bounds_.wallFoot(cell.ground),
-        .maxHeight = std::min(double{source.maxHeight}, bounds_.top(cell.ground)),
+        .maxHeight = std::min(double{source.maxHeight}, bounds_.top(cell.ground, levelsAbove(cell))),
         .screenError = heightError(source, distance).value(),
         .heightsExact = cell.heights.settled && cell.heights.exact,
         .imageryExact = cell.imagery.settled && cell.imagery.exact,

@@ -113,6 +113,21 @@ Neighbourhood GroundBounds::ofChild(const Neighbourhood& parent, const TileId& c
     return nine;
 }
 
+double GroundBounds::highestAround(const Neighbourhood& cell) const {
+    double highest = cell[4].high;
+    for (const Ground& ground : cell)
+        if (ground.surface) highest = std::max(highest, ground.high);
+    return highest + margin_;
+}
+
+double GroundBounds::highest(const Neighbourhood& cell, uint32_t levelsAbove) const {
+    return levelsAbove <= 1 ? cell[4].high + margin_ : highestAround(cell);
+}
+
+double GroundBounds::top(const Neighbourhood& cell, uint32_t levelsAbove) const {
+    return levelsAbove <= 1 ? cell[4].top + margin_ : highestAround(cell);
+}
+
 double GroundBounds::wallFoot(const Neighbourhood& cell) const {
     bool block = cell[4].hasHoles;
     double lowest = cell[4].low;

@@ -81,11 +81,16 @@ class GroundBounds {
     /// and at the edge of the ground, down to one floor for the whole dataset: the ground is a solid block.
     [[nodiscard]] double wallFoot(const Neighbourhood& cell) const;
     /// How high any surface that may be drawn in a cell may reach, its finest samples too.
-    [[nodiscard]] double highest(const Neighbourhood& cell) const { return cell[4].high + margin_; }
-    /// How high a surface in the cell may reach that is drawn from its own tile or one above it.
-    [[nodiscard]] double top(const Neighbourhood& cell) const { return cell[4].top + margin_; }
+    /// @param levelsAbove  of the tiles that may be drawn: 0 its own, 1 its parent, ... Between samples a surface leans
+    ///                     on those beside the cell. One level up, they are means of what the cell's own apron holds;
+    ///                     farther up, of what the squares around it hold.
+    [[nodiscard]] double highest(const Neighbourhood& cell, uint32_t levelsAbove) const;
+    /// How high a surface in the cell may reach that is drawn from a tile `levelsAbove` it.
+    [[nodiscard]] double top(const Neighbourhood& cell, uint32_t levelsAbove) const;
 
   private:
+    [[nodiscard]] double highestAround(const Neighbourhood& cell) const;
+
     const TileTree& tree_;
     double margin_;  ///< metres: what rounding to codes may add up to over the levels
     double floor_;   ///< metres

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <glm/common.hpp>
+#include <glm/ext/vector_int2_sized.hpp>
 #include <gtest/gtest.h>
 
 #include "client/stream/selection.h"
@@ -95,6 +96,63 @@ TEST(Walls, BoxesHoldTheSurfaceThatIsDrawn) {
             }
         }
     }
+}
+
+/// The bilinear surface of a node's height tile at a place, between the centres of its samples.
+double bilinearHeight(const FakeDataset& dataset, const DrawNode& node, glm::dvec2 place) {
+    const Tiling& tiling = dataset.metadata.tiling;
+    const HeightTile& tile = dataset.heights.at(node.heightTile);
+    const GroundRect square = tiling.bounds(node.heightTile);
+    const double spacing = tiling.spacing(node.heightTile.level);
+    const double x = (place.x - square.west) / spacing - 0.5, y = (square.north - place.y) / spacing - 0.5;
+    double height = 0;
+    for (const double column : {std::floor(x), std::floor(x) + 1})
+        for (const double row : {std::floor(y), std::floor(y) + 1}) {
+            const auto cell = glm::i64vec2(column, row) + int64_t{kHeightApron};
+            const double weight = (1 - std::abs(x - column)) * (1 - std::abs(y - row));
+            height += weight * tile.encoding.height(tile.codes.at(cell.x, cell.y));
+        }
+    return height;
+}
+
+TEST(Walls, BoxesHoldTheBilinearSurfaceThoughItLeansOnSamplesBesideTheCell) {
+    // Walls of one and two samples beside the borders of tiles: in the mean of a coarse sample across the border, but
+    // not in the apron of the finest tile before it.
+    const HeightFormula walls = [](int64_t column, int64_t row) {
+        const int64_t x = column % 1024, y = row % 1024;
+        return x == 514 || x == 515 || y == 1020 ? 900.0 : static_cast<double>((column * 7 + row * 3) % 11);
+    };
+    FakeDataset dataset = buildDataset(walls, {});
+    for (auto& [id, tile] : dataset.heights) {
+        tile.record.hasHoles = false;  // of the edge: samples beyond it are as the last ones
+        for (HeightRecord& child : tile.children) child.hasHoles = false;
+    }
+    const Tiling& tiling = dataset.metadata.tiling;
+    Random random(6);
+    int standIns = 0;
+    for (int round = 0; round < 200; ++round) {
+        const TileTree tree = randomTree(dataset, random);
+        for (const DrawNode& node : select(tree, randomView(dataset, random), {}).nodes) {
+            const GroundRect square = tiling.bounds(node.cell), ground = dataset.metadata.groundBounds();
+            const double edge = tiling.spacing(node.heightTile.level);
+            if (node.cell.level > node.heightTile.level + 1) ++standIns;
+            for (int sample = 0; sample < 100; ++sample) {
+                // Near the cell's sides, but not so near the ground's that a sample is missing.
+                const auto near = [&](double low, double high) {
+                    const double in = random.uniform(0, edge);
+                    return random.chance(0.5) ? low + in : high - in;
+                };
+                const glm::dvec2 place(near(square.west, square.east), near(square.south, square.north));
+                if (place.x < ground.west + edge || place.x > ground.east - edge || place.y < ground.south + edge ||
+                    place.y > ground.north - edge)
+                    continue;
+                const double height = bilinearHeight(dataset, node, place);
+                ASSERT_LT(node.minHeight, height);
+                ASSERT_GE(node.maxHeight + 1e-9, height) << node.cell << " from " << node.heightTile;
+            }
+        }
+    }
+    EXPECT_GT(standIns, 50) << "of two levels and more";
 }
 
 /// Least and greatest height of a ray over an interval: a parabola's least may lie between the ends.
