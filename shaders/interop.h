@@ -36,6 +36,9 @@ using uvec4 = glm::uvec4;
 #define TERRAY_BUFFER_SHADOW_CELLS 4  // SSBO: ShadowCell[]
 #define TERRAY_BUFFER_SHADOW 5        // UBO: ShadowParameters
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
+#define TERRAY_UNIFORM_ORIGIN 0  // locations of overlays, see overlay.vert and overlay.frag
+#define TERRAY_UNIFORM_GROWTH 1
+#define TERRAY_UNIFORM_COLOUR 2
 
 // Compute launch: pixels along the side of a work group, and of the square of pixels that nodes are binned to.
 #define TERRAY_GROUP_SIDE 8

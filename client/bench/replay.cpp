@@ -34,6 +34,7 @@ struct ReplayOptions {
     bool noStatistics = false;
     bool force = false;
     EngineCommandLine engine;
+    EngineOptions drawn;  ///< what `engine` comes to for the dataset
 };
 
 bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
@@ -61,8 +62,9 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
     return true;
 }
 
-EngineOptions engineOptions(const ReplayOptions& options, const DatasetMetadata& metadata) {
-    EngineOptions engine = options.engine.options(metadata.imageryLevel.has_value());
+EngineOptions engineOptions(const ReplayOptions& options, const TileSource& source) {
+    EngineOptions engine = options.engine.options(source.metadata().imageryLevel.has_value());
+    engine.overlay = options.engine.overlay(source);
     engine.features.statistics = !options.noStatistics;
     return engine;
 }
@@ -87,7 +89,7 @@ class Replay {
           flight_(flight),
           directory_(directory),
           shaders_(options.engine.shaders()),
-          engine_(source, shaders_, engineOptions(options, source.metadata()), options.width, options.height),
+          engine_(source, shaders_, options.drawn, options.width, options.height),
           table_(directory.table()),
           frames_(frameCount(flight, options.framesPerSecond)) {}
 
@@ -211,7 +213,7 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
     if (!parse(options, arguments)) return ExitCode::ok;
     const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
     const Flight flight = loadFlight(options.flight);
-    engineOptions(options, source->metadata());  // refuses what is out of range before anything is created
+    options.drawn = engineOptions(options, *source);  // refuses what is wrong before anything is created
 
     RunDirectory directory(options.out, options.pictures, options.force);
     const HeadlessContext context;

@@ -200,6 +200,8 @@ Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const Eng
                int height)
     : state_(std::make_unique<State>(source, shaders, options, width, height)) {
     setExaggeration(options.exaggeration);
+    state_->renderer.setOverlay(options.overlay);
+    state_->options.overlay.clear();  // it is on the GPU
 }
 
 Engine::~Engine() = default;

@@ -16,6 +16,7 @@
 #include "client/stream/dataset_source.h"
 #include "client/stream/pager.h"
 #include "client/stream/selection.h"
+#include "common/overlay_mesh.h"
 #include "common/utc_time.h"
 
 namespace terray {
@@ -35,6 +36,7 @@ struct EngineOptions {
     double exaggeration = 1;  ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
     /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.
     std::optional<UtcTime> sunTime;
+    std::vector<OverlayMesh> overlay;  ///< drawn into every picture
 };
 
 /// What a frame did. Times in milliseconds, sizes in bytes.

@@ -1,6 +1,5 @@
 #include "client/engine/engine_options.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +7,7 @@
 #include <string_view>
 
 #include "common/error.h"
+#include "common/parse_number.h"
 #include "common/sun_position.h"
 #include "common/units.h"
 
@@ -25,13 +25,6 @@ std::string shortText(double value) {
 void requireRange(const std::string& option, double value, double least, double most) {
     if (value < least || value > most)
         refuse(option, shortText(value), "a number from " + shortText(least) + " to " + shortText(most));
-}
-
-std::optional<double> parseNumber(std::string_view text) {
-    double value = 0;
-    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !std::isfinite(value)) return {};
-    return value;
 }
 
 std::string degreesOf(const glm::dvec3& sun) {
@@ -140,6 +133,7 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--sun-diameter", sunDiameter_, "DEGREES",
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
     line.option("--shadow-rays", shadowRays_, "N", "of each pixel when the sun has a diameter, 1 to 64 (8)");
+    overlay_.declare(line);
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
 }
@@ -209,6 +203,7 @@ Json EngineCommandLine::toJson() const {
                         {"exaggeration", exaggeration_},
                         {"earth", earth_},
                         {"refraction", refraction_},
+                        {"overlay", overlay_.toJson()},
                         {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};
 }

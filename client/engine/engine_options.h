@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/engine/engine.h"
+#include "client/engine/overlay_options.h"
 #include "common/command_line.h"
 #include "common/json.h"
 #include "common/units.h"
@@ -22,6 +24,9 @@ class EngineCommandLine {
     /// the option that is out of range.
     [[nodiscard]] EngineOptions options(bool datasetHasImagery) const;
 
+    /// What is put into the pictures of a dataset, see OverlayCommandLine::meshes.
+    [[nodiscard]] std::vector<OverlayMesh> overlay(const TileSource& source) const { return overlay_.meshes(source); }
+
     /// Every option by name without its dashes, as it is in force, for manifests.
     [[nodiscard]] Json toJson() const;
 
@@ -29,6 +34,7 @@ class EngineCommandLine {
     [[nodiscard]] ShaderLibrary shaders() const;
 
   private:
+    OverlayCommandLine overlay_;
     double tolerance_ = SelectionOptions().tolerance.value();
     double imageryTolerance_ = SelectionOptions().imageryTolerance.value();
     bool noImagery_ = false;

@@ -22,6 +22,10 @@ FeatureSet FeatureSet::shadowing() const {
     return {.statistics = statistics, .bilinear = true, .curved = curved, .softSun = softSun};
 }
 
+FeatureSet FeatureSet::overlaying() const {
+    return {.linearColour = linearColour, .curved = curved, .sky = sky, .air = air};
+}
+
 ShaderDefines FeatureSet::defines() const {
     const auto digit = [](bool on) { return on ? "1" : "0"; };
     return {

@@ -29,6 +29,8 @@ struct FeatureSet {
     [[nodiscard]] FeatureSet marching() const;
     /// What the programs that resolve depend on, likewise.
     [[nodiscard]] FeatureSet resolving() const;
+    /// What the programs of overlays depend on, likewise.
+    [[nodiscard]] FeatureSet overlaying() const;
 
     /// What the programs that cast shadow rays depend on; these rays see patches everywhere.
     [[nodiscard]] FeatureSet shadowing() const;

@@ -110,6 +110,16 @@ const ShadowTargets& FrameTargets::shadow() {
     return *shadow_;
 }
 
+const OverlayTargets& FrameTargets::overlay() {
+    if (overlay_) return *overlay_;
+    OverlayTargets made;
+    made.depth = makeTarget(GL_DEPTH_COMPONENT32F, width_, height_);
+    made.bytes = static_cast<uint64_t>(GridSize{width_, height_}.count()) * 4;
+    made.framebuffer = makeTargetFramebuffer("overlay", {colour.name()}, made.depth.name());
+    overlay_ = std::make_unique<OverlayTargets>(std::move(made));
+    return *overlay_;
+}
+
 Grid<std::array<uint8_t, 4>> FrameTargets::readSrgb() const {
     TERRAY_CHECK(format_ == ColourFormat::srgb8);
     auto colours = readTexture<std::array<uint8_t, 4>>(colour, {width_, height_}, GL_RGBA, GL_UNSIGNED_BYTE);

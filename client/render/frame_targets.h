@@ -31,6 +31,13 @@ struct ShadowTargets {
     uint64_t bytes = 0;
 };
 
+/// What only overlays are drawn into.
+struct OverlayTargets {
+    GlTexture depth;
+    GlFramebuffer framebuffer;  ///< {colour | depth}
+    uint64_t bytes = 0;
+};
+
 /// How colours leave the resolve pass.
 enum class ColourFormat : uint8_t {
     srgb8,        ///< 8-bit sRGB, for PNG and the screen: GL_RGBA8 whose bytes the resolve pass has encoded
@@ -55,7 +62,8 @@ class FrameTargets {
     /// As given; linearColour follows the format.
     [[nodiscard]] const FeatureSet& features() const { return features_; }
     [[nodiscard]] uint64_t bytes() const {
-        return bytes_ + (raster_ ? raster_->bytes : 0) + (shadow_ ? shadow_->bytes : 0);
+        return bytes_ + (raster_ ? raster_->bytes : 0) + (shadow_ ? shadow_->bytes : 0) +
+               (overlay_ ? overlay_->bytes : 0);
     }
 
     /// sRGB bytes, alpha 255; needs ColourFormat::srgb8.
@@ -83,6 +91,8 @@ class FrameTargets {
     /// Made on first use; kept until dropShadow().
     const ShadowTargets& shadow();
     void dropShadow() { shadow_.reset(); }
+    /// Made on first use and kept.
+    const OverlayTargets& overlay();
 
   private:
     int width_;
@@ -92,6 +102,7 @@ class FrameTargets {
     uint64_t bytes_ = 0;  ///< of what does not depend on the launch
     std::unique_ptr<RasterTargets> raster_;
     std::unique_ptr<ShadowTargets> shadow_;
+    std::unique_ptr<OverlayTargets> overlay_;
 };
 
 }  // namespace terray

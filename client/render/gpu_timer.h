@@ -10,8 +10,8 @@
 namespace terray {
 
 /// The passes whose GPU time is reported apart.
-enum class GpuPass : uint8_t { upload, id, march, shadow, resolve };
-inline constexpr size_t kGpuPasses = 5;
+enum class GpuPass : uint8_t { upload, id, march, shadow, resolve, overlay };
+inline constexpr size_t kGpuPasses = 6;
 [[nodiscard]] std::string_view name(GpuPass pass);
 
 /// GPU time of each pass of a frame, by GL timestamp queries. A pass may be entered many times in a frame; its times

@@ -178,6 +178,10 @@ void TerrainRenderer::calibrate(CastFrame frame, bool occlusion) {
     calibration_ = result;
 }
 
+void TerrainRenderer::setOverlay(std::span<const OverlayMesh> meshes) {
+    overlay_ = meshes.empty() ? nullptr : std::make_unique<OverlayPass>(shaders_, meshes);
+}
+
 void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, std::span<const DrawNode> casters,
                              const GpuTiles& tiles, const RenderOptions& options, FrameTargets& targets,
                              GpuTimer* timer) {
@@ -222,6 +226,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     if (launch == Launch::compute) targets.dropRaster();
     frame.features.occlusion = options.occlusion && launch == Launch::raster;
     draw(frame, launch);
+    if (overlay_) overlay_->draw(frame);
 
     glBindSampler(TERRAY_UNIT_PHOTO, 0);
     glBindSampler(TERRAY_UNIT_SKY, 0);
@@ -232,7 +237,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
 uint64_t TerrainRenderer::bufferBytes() const {
     return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) +
            RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes() + (sky_ ? sky_->bytes() : 0) +
-           (shadowPass_ ? shadowPass_->bufferBytes() : 0);
+           (shadowPass_ ? shadowPass_->bufferBytes() : 0) + (overlay_ ? overlay_->bytes() : 0);
 }
 
 }  // namespace terray

@@ -11,6 +11,7 @@
 
 #include "client/render/compute_launch.h"
 #include "client/render/gpu_tiles.h"
+#include "client/render/overlay_pass.h"
 #include "client/render/raster_launch.h"
 #include "client/render/shadow_pass.h"
 #include "client/render/sky_table.h"
@@ -78,6 +79,9 @@ class TerrainRenderer {
     void render(const View& view, std::span<const DrawNode> nodes, std::span<const DrawNode> casters,
                 const GpuTiles& tiles, const RenderOptions& options, FrameTargets& targets, GpuTimer* timer);
 
+    /// From now on draws these into each picture, in place of those given before; none: nothing is kept of them.
+    void setOverlay(std::span<const OverlayMesh> meshes);
+
     /// What the calibration chose, and in milliseconds why.
     struct Calibration {
         Launch chosen = Launch::raster;
@@ -120,6 +124,7 @@ class TerrainRenderer {
     GlSampler photoSampler_;
     std::unique_ptr<SkyTable> sky_;  ///< while RenderOptions::sky is on
     uint64_t nodeCapacity_ = 0;
+    std::unique_ptr<OverlayPass> overlay_;  ///< none without meshes
 };
 
 }  // namespace terray

@@ -131,7 +131,8 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     const PictureKind kind = kindOf(out);
 
     const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
-    const EngineOptions chosen = engineOptions(options, kind, source->metadata());
+    EngineOptions chosen = engineOptions(options, kind, source->metadata());
+    chosen.overlay = options.engine.overlay(*source);
     const std::optional<Camera> given = cameraOf(options, source->metadata());
     requireWritable(out, options.force);
 

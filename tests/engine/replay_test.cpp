@@ -178,6 +178,7 @@ TEST_F(ReplayTest, BadUseHasItsCodes) {
     EXPECT_EQ(replay("run", {"--fps", "0"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--warm-up", "-1"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--anisotropy", "99"}), ExitCode::usage);
+    EXPECT_EQ(replay("run", {"--marker", "here"}), ExitCode::usage);
     EXPECT_FALSE(std::filesystem::exists(in("run")));
     EXPECT_FALSE(std::filesystem::exists(in("t.json")));
 }

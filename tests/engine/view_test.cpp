@@ -90,6 +90,16 @@ TEST_F(ViewTest, TheSameViewIsTheSameFile) {
     EXPECT_EQ(bytes("a.png"), bytes("b.png"));
 }
 
+TEST_F(ViewTest, PutsAPinIntoThePicture) {
+    ASSERT_EQ(view(headless("a.png")), ExitCode::ok);
+    ASSERT_EQ(view(headless("b.png", {"--marker", "401000,5198000"})), ExitCode::ok);
+    const auto bytes = [&](const std::string& name) {
+        std::ifstream file(out(name), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    EXPECT_NE(bytes("a.png"), bytes("b.png"));
+}
+
 TEST_F(ViewTest, BadUseHasItsCodes) {
     EXPECT_EQ(view({}), ExitCode::usage);
     EXPECT_EQ(view({"--help"}), ExitCode::ok);
@@ -99,6 +109,7 @@ TEST_F(ViewTest, BadUseHasItsCodes) {
     EXPECT_EQ(view(headless("a.png", {"--camera", "1,2,3"})), ExitCode::usage);
     EXPECT_EQ(view(headless("a.png", {"--camera", "1,2,3,4,north"})), ExitCode::usage);
     EXPECT_EQ(view(headless("a.png", {"--occlusion", "perhaps"})), ExitCode::usage);
+    EXPECT_EQ(view(headless("a.png", {"--marker", "here"})), ExitCode::usage);
     EXPECT_EQ(view(headless("a.png", {"--shade", "dir"})), ExitCode::usage);
     EXPECT_EQ(view(headless("a.png", {"--shaders", out("none")})), ExitCode::usage);
     EXPECT_EQ(own_.entries(), 0u);

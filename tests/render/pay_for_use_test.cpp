@@ -105,6 +105,20 @@ TEST_F(PayForUse, SkyAndAirAreReadOnlyWhenTheyAreOn) {
     }
 }
 
+TEST_F(PayForUse, OverlaysReadHitsAndWhatTheirMeshIs) {
+    const Names own = {"colour", "growth", "hitNodes", "hits", "origin"};
+    const auto overlay = [&](const FeatureSet& features) {
+        return uniforms({"overlay.vert", "overlay.frag"}, features);
+    };
+    EXPECT_EQ(overlay({}), own);
+    EXPECT_EQ(overlay({.linearColour = true, .curved = true}), own);
+    EXPECT_EQ(overlay({.air = true}), own);
+    EXPECT_EQ(overlay({.sky = true}), own) << "the light comes from a buffer";
+    Names throughAir = own;
+    throughAir.insert("airTable");
+    EXPECT_EQ(overlay({.sky = true, .air = true}), throughAir);
+}
+
 TEST_F(PayForUse, EveryCombinationOfFeaturesCompiles) {
     for (int bits = 0; bits < 1 << 11; ++bits) {
         FeatureSet features{.imagery = (bits & 1) != 0,
@@ -127,6 +141,9 @@ TEST_F(PayForUse, EveryCombinationOfFeaturesCompiles) {
         if (features == features.resolving()) {
             EXPECT_FALSE(uniforms({"screen.vert", "resolve.frag"}, features).empty());
             EXPECT_FALSE(uniforms({"resolve.comp"}, features).empty());
+        }
+        if (features == features.overlaying()) {
+            EXPECT_FALSE(uniforms({"overlay.vert", "overlay.frag"}, features).empty());
         }
     }
 }
