@@ -9,39 +9,46 @@
 // Hurley 2005, "Multi-level ray tracing algorithm", doi 10.1145/1073204.1073329 (entry points for groups of rays);
 // Amanatides 1984, "Ray tracing with cones", doi 10.1145/800031.808589.
 
+#include "tests/bench/packet_march/packet_march.h"
 #include "tests/bench/packet_march/ray_packet.h"
 
 namespace terray::TERRAY_LANES {
 
-struct BeamStarts {
-    Float t;    ///< no ray of the beam meets the ground before; infinity: none does at all
-    Int level;  ///< for its rays to start with
+/// Eight beams of rays with one eye.
+struct Beams {
+    Rays centres;  ///< the central rays, but rise: least of each beam's rays
+    Float spread;  ///< cells by which a beam's rays lie beside its centre at t = 1, > 0
 };
 
-/// Beams at the eye. centres.rise: least of the beam's rays.
-inline RayPacket startBeams(const PyramidView& pyramid, const Rays& centres, Float spread) {
-    RayPacket beams = startPacket(pyramid, centres, Float{}, all(pyramid.coarsest));
+/// How far beams are known to be above the ground.
+struct BeamStarts {
+    Float t;    ///< no ray of the beam meets the ground before; infinity: none does at all
+    Int level;  ///< for its rays to start with: one finer than the block that stopped the beam
+};
+
+inline RayPacket startBeams(const PyramidView& pyramid, const Beams& beams) {
+    RayPacket packet = startPacket(pyramid, beams.centres, Float{}, all(pyramid.coarsest));
 
     // The slabs of the map, for the ray of the beam that enters first and the one that leaves last.
-    const MapEdges map = mapEdges(pyramid, beams);
-    const Pair first = {safeInverse(beams.direction.x + spread), safeInverse(beams.direction.y + spread)};
-    const Pair last = {safeInverse(maximum(beams.direction.x - spread, Float{})),
-                       safeInverse(maximum(beams.direction.y - spread, Float{}))};
-    const Pair enterTimes = edgeTimes(map.low, beams.eye, first);
-    const Pair exitTimes = edgeTimes(map.high, beams.eye, last);
+    const MapEdges map = mapEdges(pyramid, packet);
+    const Pair first = {safeInverse(packet.direction.x + beams.spread), safeInverse(packet.direction.y + beams.spread)};
+    const Pair last = {safeInverse(maximum(packet.direction.x - beams.spread, Float{})),
+                       safeInverse(maximum(packet.direction.y - beams.spread, Float{}))};
+    const Pair enterTimes = edgeTimes(map.low, packet.eye, first);
+    const Pair exitTimes = edgeTimes(map.high, packet.eye, last);
     const Float enter = maximum(Float{}, maximum(enterTimes.x, enterTimes.y));
     const Float exit = minimum(exitTimes.x, exitTimes.y);
 
-    const Int falls = centres.rise < 0;
-    const Float topTime = (static_cast<float>(pyramid.maxima[0]) - centres.eyeZ) * beams.inverseRise;
-    beams.t = select(falls, maximum(enter, topTime), enter);
-    beams.exit = select(falls, exit, minimum(exit, topTime));
-    beams.marching = beams.t <= beams.exit;
+    const Int falls = beams.centres.rise < 0;
+    const Float topTime = (static_cast<float>(pyramid.maxima[0]) - beams.centres.eyeZ) * packet.inverseRise;
+    packet.t = select(falls, maximum(enter, topTime), enter);
+    packet.exit = select(falls, exit, minimum(exit, topTime));
+    packet.marching = packet.t <= packet.exit;
     // A centre beside the map is in a cell that does not exist. advance() may put it one cell too far there; beamStep()
     // takes all of these cells for the map's first.
-    beams.cell = {floored(mulAdd(beams.t, beams.direction.x, beams.eye.x)),
-                  floored(mulAdd(beams.t, beams.direction.y, beams.eye.y))};
-    return beams;
+    packet.cell = {floored(mulAdd(packet.t, packet.direction.x, packet.eye.x)),
+                   floored(mulAdd(packet.t, packet.direction.y, packet.eye.y))};
+    return packet;
 }
 
 /// One step of all beams; fills in the starts of those that stop.
@@ -63,7 +70,7 @@ inline void beamStep(const PyramidView& pyramid, RayPacket& beams, Float spread,
     const Float onTop = clamp((top - beams.eyeZ) * beams.inverseRise, beams.t, leave);
     const Float next = select(meets, select(falls, onTop, beams.t), leave);
 
-    const Int canGoDown = (beams.level > kFinestAround) & (next < 0.5F * wide);
+    const Int canGoDown = (beams.level > 1) & (next < 0.5F * wide);
     const Int coarsest = all(pyramid.coarsest);
     const Int stops = beams.marching & ((meets & ~canGoDown) | (~meets & outgrows & (beams.level == coarsest)));
     starts.t = select(stops, next, starts.t);
@@ -77,13 +84,11 @@ inline void beamStep(const PyramidView& pyramid, RayPacket& beams, Float spread,
     advance(beams, beams.marching, next, edge, crossing, select(meets, beams.level - 1, above));
 }
 
-/// @param centres  the beams' central rays; rise: the least of each beam's rays
-/// @param spread   cells by which a beam's rays lie beside its centre at t = 1, > 0
-inline BeamStarts findStarts(const PyramidView& pyramid, const Rays& centres, Float spread, int& steps) {
+/// Marches beams from the eye until all have stopped or left the map.
+inline BeamStarts marchBeams(const PyramidView& pyramid, const Beams& beams, CastWork& work) {
     BeamStarts starts = {all(__builtin_inff()), all(pyramid.start)};
-    if (pyramid.coarsest < kFinestAround) return {Float{}, starts.level};
-    RayPacket beams = startBeams(pyramid, centres, spread);
-    for (; any(beams.marching); ++steps) beamStep(pyramid, beams, spread, starts);
+    RayPacket packet = startBeams(pyramid, beams);
+    for (; any(packet.marching); ++work.beamSteps) beamStep(pyramid, packet, beams.spread, starts);
     return starts;
 }
 

@@ -21,9 +21,9 @@ size_t levelStart(int coarsest, int level) {
     return 0x55555555U & ((1U << (2 * (coarsest - level))) - 1);
 }
 
-/// Values in the levels from the coarsest to `level`.
-size_t levelEnd(int coarsest, int level) {
-    return levelStart(coarsest, level) + (size_t{1} << (2 * (coarsest - level)));
+/// Values in all levels from 1.
+size_t blockCount(int coarsest) {
+    return levelStart(coarsest, 0);
 }
 
 /// Level 1: a block's patches interpolate 3 x 3 samples.
@@ -90,8 +90,8 @@ HeightPyramid::HeightPyramid(GridView<const uint16_t> codes) {
 
     // One value more each, for reads in pairs.
     codes_ = allocate(static_cast<size_t>(codes.size().count()) + 1);
-    maxima_ = allocate(levelEnd(coarsest, 1) + 1);
-    around_ = allocate(levelEnd(coarsest, std::min(kFinestAround, coarsest)) + 1);
+    maxima_ = allocate(blockCount(coarsest) + 1);
+    around_ = allocate(blockCount(coarsest) + 1);
     view_ = {.codes = codes_.get(),
              .width = static_cast<int32_t>(codes.width()),
              .height = static_cast<int32_t>(codes.height()),
@@ -104,7 +104,7 @@ HeightPyramid::HeightPyramid(GridView<const uint16_t> codes) {
     for (int64_t y = 0; y < codes.height(); ++y) std::ranges::copy(codes.row(y), own.row(y).begin());
     reduceSamples(own, level(maxima_, 1));
     for (int l = 2; l <= coarsest; ++l) reduceBlocks(level(maxima_, l - 1), level(maxima_, l));
-    for (int l = kFinestAround; l <= coarsest; ++l) spread(level(maxima_, l), level(around_, l));
+    for (int l = 1; l <= coarsest; ++l) spread(level(maxima_, l), level(around_, l));
 }
 
 GridView<uint16_t> HeightPyramid::level(const Values& values, int level) const {
@@ -125,8 +125,7 @@ size_t HeightPyramid::sampleBytes() const {
 }
 
 size_t HeightPyramid::maximaBytes() const {
-    return sizeof(uint16_t) *
-           (levelEnd(view_.coarsest, 1) + levelEnd(view_.coarsest, std::min(kFinestAround, view_.coarsest)));
+    return 2 * sizeof(uint16_t) * blockCount(view_.coarsest);
 }
 
 }  // namespace terray

@@ -7,12 +7,23 @@
 namespace terray::TERRAY_LANES {
 
 // A packet is 4 x 2 pixels, a square of 8 x 8 is one beam and eight packets, a tile is 4 x 2 squares.
-inline constexpr int kPacketWidth = 4;
-inline constexpr int kPacketHeight = 2;
 inline constexpr int kSquareSide = 8;
-inline constexpr int kPackets = kSquareSide * kSquareSide / kLanes;
-inline constexpr Int kLaneX = {0, 1, 2, 3, 0, 1, 2, 3};
+inline constexpr int kPackets = kTileWidth * kTileHeight / kLanes;
+inline constexpr Int kLaneX = {0, 1, 2, 3, 0, 1, 2, 3};  // of a packet's pixels, and of a tile's squares
 inline constexpr Int kLaneY = {0, 0, 0, 0, 1, 1, 1, 1};
+inline constexpr Int kPacketX = {0, 4, 0, 4, 0, 4, 0, 4};  // of a square's packets
+inline constexpr Int kPacketY = {0, 0, 2, 2, 4, 4, 6, 6};
+
+/// Upper left pixel of packet 0 .. kPackets - 1 in its tile; packets of a square follow each other.
+struct Place {
+    int x;
+    int y;
+};
+inline Place packetPlace(int packet) {
+    const int square = packet / kLanes;
+    return {kLaneX[square] * kSquareSide + kPacketX[packet % kLanes],
+            kLaneY[square] * kSquareSide + kPacketY[packet % kLanes]};
+}
 
 /// The rays through eight points of a picture, in pixels from the centre of the upper left one.
 inline Rays raysThrough(const PictureRays& picture, Float x, Float y) {
@@ -23,7 +34,7 @@ inline Rays raysThrough(const PictureRays& picture, Float x, Float y) {
             .rise = mulAdd(y, all(picture.down.z), mulAdd(x, all(picture.right.z), all(picture.first.z)))};
 }
 
-/// Packets of a square by their next step. A packet may have lanes for both; those above level 0 go first.
+/// Packets of a tile by their next step. A packet may have lanes for both; those above level 0 go first.
 struct Queue {
     int items[kPackets];
     int count = 0;
@@ -39,24 +50,25 @@ inline void enqueue(const RayPacket& packet, int item, Queue& above, Queue& befo
     }
 }
 
-/// Marches packets to their ends. They take turns, so that while one waits for memory the others' steps are under way.
+/// Marches the packets of a tile to their ends. They take turns, so that while one waits for memory the steps of others
+/// are under way, and so many of them that loops seldom end.
 inline void marchTogether(const PyramidView& pyramid, RayPacket* packets, CastWork& work) {
     Queue above;   // with lanes above level 0
     Queue before;  // whose lanes are all before a patch
     for (int i = 0; i < kPackets; ++i) enqueue(packets[i], i, above, before);
     while (above.count + before.count > 0) {
         while (above.count > 0) {
+            work.pyramidSteps += above.count;
             const Queue turn = above;
             above.count = 0;
-            work.pyramidSteps += turn.count;
             for (int i = 0; i < turn.count; ++i) {
                 pyramidStep(pyramid, packets[turn.items[i]]);
                 enqueue(packets[turn.items[i]], turn.items[i], above, before);
             }
         }
+        work.patchSteps += before.count;
         const Queue turn = before;
         before.count = 0;
-        work.patchSteps += turn.count;
         for (int i = 0; i < turn.count; ++i) {
             patchStep(pyramid, packets[turn.items[i]]);
             enqueue(packets[turn.items[i]], turn.items[i], above, before);
@@ -64,62 +76,41 @@ inline void marchTogether(const PyramidView& pyramid, RayPacket* packets, CastWo
     }
 }
 
-/// A square of 8 x 8 pixels whose rays are still above the ground at `start`. depths: in rows of kTileWidth.
-inline void castSquare(const PyramidView& pyramid, const PictureRays& picture, int left, int top, float start,
-                       int level, float* depths, CastWork& work) {
-    RayPacket packets[kPackets];
-    int count = 0;
-    for (int y = 0; y < kSquareSide; y += kPacketHeight) {
-        for (int x = 0; x < kSquareSide; x += kPacketWidth) {
-            const Rays rays = raysThrough(picture, converted(kLaneX + (left + x)), converted(kLaneY + (top + y)));
-            packets[count++] = startPacket(pyramid, rays, all(start), all(level));
-        }
-    }
-    marchTogether(pyramid, packets, work);
-    const RayPacket* packet = packets;
-    for (int y = 0; y < kSquareSide; y += kPacketHeight)
-        for (int x = 0; x < kSquareSide; x += kPacketWidth, ++packet)
-            for (int lane = 0; lane < kLanes; ++lane)
-                depths[(y + kLaneY[lane]) * kTileWidth + x + kLaneX[lane]] = packet->hit[lane];
-}
-
-inline void fillSquare(float value, float* depths) {
-    for (int y = 0; y < kSquareSide; ++y)
-        for (int x = 0; x < kSquareSide; ++x) depths[y * kTileWidth + x] = value;
-}
-
-/// Where the rays of the eight squares of a tile may start.
-inline BeamStarts findTileStarts(const PyramidView& pyramid, const PictureRays& picture, int left, int top,
-                                 CastWork& work) {
+/// The beams of a tile's squares.
+inline Beams squareBeams(const PictureRays& picture, int left, int top) {
     const float middle = 0.5F * (kSquareSide - 1);
-    Rays centres = raysThrough(picture, converted(kLaneX * kSquareSide + left) + middle,
-                               converted(kLaneY * kSquareSide + top) + middle);
+    const Float x = converted(kLaneX * kSquareSide + left) + middle;
+    const Float y = converted(kLaneY * kSquareSide + top) + middle;
     // From the centre to the outermost rays, and a little more for rounding.
-    const float half = 1.01F * middle;
-    const float spreadX = half * (__builtin_fabsf(picture.right.x) + __builtin_fabsf(picture.down.x));
-    const float spreadY = half * (__builtin_fabsf(picture.right.y) + __builtin_fabsf(picture.down.y));
-    const float spreadZ = half * (__builtin_fabsf(picture.right.z) + __builtin_fabsf(picture.down.z));
-    centres.rise -= spreadZ;
-    int steps = 0;
-    const float spread = __builtin_fmaxf(__builtin_fmaxf(spreadX, spreadY), 1e-30F);
-    const BeamStarts starts = findStarts(pyramid, centres, all(spread), steps);
-    work.beamSteps += steps;
-    return starts;
+    const auto reach = [&](float right, float down) {
+        return 1.01F * middle * (__builtin_fabsf(right) + __builtin_fabsf(down));
+    };
+    Beams beams = {.centres = raysThrough(picture, x, y), .spread = {}};
+    beams.centres.rise -= reach(picture.right.z, picture.down.z);
+    const float spreadX = reach(picture.right.x, picture.down.x);
+    const float spreadY = reach(picture.right.y, picture.down.y);
+    beams.spread = all(__builtin_fmaxf(__builtin_fmaxf(spreadX, spreadY), 1e-30F));
+    return beams;
 }
 
 inline void castTile(const PyramidView& pyramid, const PictureRays& picture, int left, int top, bool beams,
                      float* depths, CastWork& work) {
     BeamStarts starts = {Float{}, all(pyramid.start)};
-    if (beams) starts = findTileStarts(pyramid, picture, left, top, work);
-    for (int i = 0; i < kLanes; ++i) {
-        const int x = kLaneX[i] * kSquareSide;
-        const int y = kLaneY[i] * kSquareSide;
-        float* const square = depths + y * kTileWidth + x;
-        if (starts.t[i] == __builtin_inff()) {
-            fillSquare(starts.t[i], square);
-        } else {
-            castSquare(pyramid, picture, left + x, top + y, starts.t[i], starts.level[i], square, work);
-        }
+    if (beams) starts = marchBeams(pyramid, squareBeams(picture, left, top), work);
+
+    RayPacket packets[kPackets];
+    for (int i = 0; i < kPackets; ++i) {
+        const Place place = packetPlace(i);
+        const Float x = converted(kLaneX + (left + place.x));
+        const Float y = converted(kLaneY + (top + place.y));
+        const int square = i / kLanes;
+        packets[i] = startPacket(pyramid, raysThrough(picture, x, y), all(starts.t[square]), all(starts.level[square]));
+    }
+    marchTogether(pyramid, packets, work);
+    for (int i = 0; i < kPackets; ++i) {
+        const Place place = packetPlace(i);
+        for (int lane = 0; lane < kLanes; ++lane)
+            depths[(place.y + kLaneY[lane]) * kTileWidth + place.x + kLaneX[lane]] = packets[i].hit[lane];
     }
 }
 

@@ -59,11 +59,29 @@ inline Int truncated(Float value) {
 inline Int floored(Float value) {
     return truncated(_mm256_floor_ps(value));
 }
-/// values[index] in the low half and values[index + 1] in the high half of each lane; 0 where the mask is not set, and
-/// nothing is read there.
+/// Two values at each of the four places whose indices the two words hold.
+inline __m128i pairsAt(const uint16_t* values, uint64_t first, uint64_t second) {
+    const auto pair = [&](uint32_t index) {
+        int32_t bits;
+        __builtin_memcpy(&bits, values + index, sizeof bits);
+        return bits;
+    };
+    __m128i pairs = _mm_cvtsi32_si128(pair(static_cast<uint32_t>(first)));
+    pairs = _mm_insert_epi32(pairs, pair(static_cast<uint32_t>(first >> 32)), 1);
+    pairs = _mm_insert_epi32(pairs, pair(static_cast<uint32_t>(second)), 2);
+    return _mm_insert_epi32(pairs, pair(static_cast<uint32_t>(second >> 32)), 3);
+}
+/// values[index] in the low half and values[index + 1] in the high half of each lane; anything where the mask is not
+/// set, whatever the index is there. Single loads: on Zen 5 they take 5 cycles where vpgatherdd takes 12.
 inline Int gatherPairs(const uint16_t* values, Int index, Int mask) {
-    return lanes(_mm256_mask_i32gather_epi32(_mm256_setzero_si256(), reinterpret_cast<const int*>(values), raw(index),
-                                             raw(mask), sizeof(uint16_t)));
+    const __m256i safe = raw(index & mask);
+    const __m128i low = _mm256_castsi256_si128(safe);
+    const __m128i high = _mm256_extracti128_si256(safe, 1);
+    const auto word = [](__m128i words, int half) {
+        return static_cast<uint64_t>(half == 0 ? _mm_cvtsi128_si64(words) : _mm_extract_epi64(words, 1));
+    };
+    return lanes(
+        _mm256_set_m128i(pairsAt(values, word(high, 0), word(high, 1)), pairsAt(values, word(low, 0), word(low, 1))));
 }
 
 }  // namespace terray::TERRAY_LANES

@@ -58,8 +58,8 @@ inline Int floored(Float value) {
     const Int towardsZero = truncated(value);
     return towardsZero + (converted(towardsZero) > value);  // a mask is -1
 }
-/// values[index] in the low half and values[index + 1] in the high half of each lane; 0 where the mask is not set, and
-/// nothing is read there.
+/// values[index] in the low half and values[index + 1] in the high half of each lane; anything where the mask is not
+/// set, whatever the index is there.
 inline Int gatherPairs(const uint16_t* values, Int index, Int mask) {
     Int pairs = {};
     for (int i = 0; i < kLanes; ++i) {

@@ -39,21 +39,29 @@ int tilesAcross(const PictureRays& rays) {
 
 }  // namespace
 
+MapRay pixelRay(const PictureRays& rays, int64_t x, int64_t y) {
+    return {rays.eye, rays.first + static_cast<float>(x) * rays.right + static_cast<float>(y) * rays.down};
+}
+
 int tileCount(const PictureRays& rays) {
     return tilesAcross(rays) * ((rays.height + kTileHeight - 1) / kTileHeight);
+}
+
+GridRect tileRect(const PictureRays& rays, int tile) {
+    const int64_t left = int64_t{tile % tilesAcross(rays)} * kTileWidth;
+    const int64_t top = int64_t{tile / tilesAcross(rays)} * kTileHeight;
+    return intersection({left, top, kTileWidth, kTileHeight}, {0, 0, rays.width, rays.height});
 }
 
 CastWork castPictureTile(const PacketKernel& kernel, const HeightPyramid& pyramid, const PictureRays& rays, int tile,
                          bool beams, GridView<float> depths) {
     TERRAY_CHECK(depths.size() == (GridSize{rays.width, rays.height}));
-    const int left = tile % tilesAcross(rays) * kTileWidth;
-    const int top = tile / tilesAcross(rays) * kTileHeight;
+    const GridRect inside = tileRect(rays, tile);
     CastWork work;
     std::array<float, static_cast<size_t>(kTileWidth) * kTileHeight> cast;
-    kernel.castTile(pyramid.view(), rays, left, top, beams, cast.data(), work);
-
+    kernel.castTile(pyramid.view(), rays, static_cast<int>(inside.x), static_cast<int>(inside.y), beams, cast.data(),
+                    work);
     const GridView<const float> rows(cast.data(), {kTileWidth, kTileHeight});
-    const GridRect inside = intersection({left, top, kTileWidth, kTileHeight}, {0, 0, rays.width, rays.height});
     for (int64_t y = 0; y < inside.height; ++y)
         std::ranges::copy(rows.row(y).first(static_cast<size_t>(inside.width)), depths.window(inside).row(y).begin());
     return work;

@@ -54,9 +54,13 @@ struct PacketKernel {
 /// The fastest that runs here.
 [[nodiscard]] const PacketKernel& bestKernel();
 
+/// The ray of pixel (x, y) as the kernels make it, but for rounding.
+[[nodiscard]] MapRay pixelRay(const PictureRays& rays, int64_t x, int64_t y);
 /// Tiles of a picture, row by row.
 [[nodiscard]] int tileCount(const PictureRays& rays);
-/// Casts tile 0 .. tileCount - 1 into its part of a picture of depths.
+/// The pixels of tile 0 .. tileCount - 1 that the picture has.
+[[nodiscard]] GridRect tileRect(const PictureRays& rays, int tile);
+/// Casts a tile into its part of a picture of depths.
 CastWork castPictureTile(const PacketKernel& kernel, const HeightPyramid& pyramid, const PictureRays& rays, int tile,
                          bool beams, GridView<float> depths);
 /// Casts any number of rays, `t` of the same number.

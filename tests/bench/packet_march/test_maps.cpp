@@ -15,32 +15,24 @@ namespace terray::test {
 namespace {
 
 TestMap mountains(GridSize size) {
-    TestMap map{"mountains", Grid<uint16_t>(size)};
+    Grid<uint16_t> codes(size);
     const TerrainFunction terrain({.size = size.width, .spacing = 2, .seed = 5});
     std::vector<float> row(static_cast<size_t>(size.width));
     for (int64_t y = 0; y < size.height; ++y) {
         terrain.heights(2, 4 * y + 2, 4, row);
         for (int64_t x = 0; x < size.width; ++x)
-            map.codes.at(x, y) = static_cast<uint16_t>(std::lround(row[static_cast<size_t>(x)]) + 1);
+            codes.at(x, y) = static_cast<uint16_t>(std::lround(row[static_cast<size_t>(x)]) + 1);
     }
-    return map;
+    return {"mountains", std::move(codes)};
 }
 
 /// A map whose code at (x, y) is code(x, y).
 template <class Code>
 TestMap made(std::string name, GridSize size, Code code) {
-    TestMap map{std::move(name), Grid<uint16_t>(size)};
+    Grid<uint16_t> codes(size);
     for (int64_t y = 0; y < size.height; ++y)
-        for (int64_t x = 0; x < size.width; ++x) map.codes.at(x, y) = static_cast<uint16_t>(code(x, y));
-    return map;
-}
-
-float greatest(const TestMap& map) {
-    return *std::ranges::max_element(map.codes.cells());
-}
-
-glm::vec3 extent(const TestMap& map) {
-    return {static_cast<float>(map.codes.width() - 1), static_cast<float>(map.codes.height() - 1), greatest(map)};
+        for (int64_t x = 0; x < size.width; ++x) codes.at(x, y) = static_cast<uint16_t>(code(x, y));
+    return {std::move(name), std::move(codes)};
 }
 
 /// Whether a ray never is over a point with 0 < coordinate < last.
@@ -53,25 +45,34 @@ bool passesBy(float eye, float direction, float last) {
 
 std::vector<TestMap> testMaps() {
     Random random(11);
-    return {mountains({300, 217}), made("noise", {65, 34}, [&](int64_t, int64_t) { return 1 + random.below(40); }),
+    return {mountains({300, 217}),
+            made("noise", {65, 34}, [&](int64_t, int64_t) { return 1 + random.below(40); }),
             made("terraces", {48, 129}, [](int64_t x, int64_t y) { return 10 + 25 * ((x / 5 + y / 7) % 3); }),
             made("plateau", {17, 17}, [](int64_t, int64_t) { return 100; }),
+            made("shaft", {64, 64},
+                 [](int64_t x, int64_t y) { return (x - 32) * (x - 32) + (y - 32) * (y - 32) < 40 ? 10 : 300; }),
             made("one patch", {2, 2}, [](int64_t x, int64_t y) { return x == y ? 5 : 25; })};
 }
 
+TestMap::TestMap(std::string mapName, Grid<uint16_t> mapCodes)
+    : name(std::move(mapName)), codes(std::move(mapCodes)), steepest(0) {
+    const auto samples = codes.view();
+    extent = {static_cast<float>(samples.width() - 1), static_cast<float>(samples.height() - 1),
+              static_cast<float>(std::ranges::max(codes.cells()))};
+    for (int64_t y = 0; y < samples.height(); ++y)
+        for (int64_t x = 0; x < samples.width(); ++x)
+            for (const int other : {samples.clamped(x + 1, y), samples.clamped(x, y + 1)})
+                steepest = std::max(steepest, static_cast<float>(std::abs(other - samples.at(x, y))));
+}
+
 float TestMap::rounding(const MapRay& ray) const {
-    float steepest = 0;
-    for (int64_t y = 0; y < codes.height(); ++y)
-        for (int64_t x = 0; x < codes.width(); ++x)
-            for (const auto& other : {codes.view().clamped(x + 1, y), codes.view().clamped(x, y + 1)})
-                steepest = std::max(steepest, std::abs(static_cast<float>(other) - codes.at(x, y)));
-    const glm::vec3 size = glm::abs(ray.eye) + extent(*this);
+    const glm::vec3 size = glm::abs(ray.eye) + extent;
     return 8 * 0x1p-24F * (size.z + 2 * steepest * std::max(size.x, size.y));
 }
 
 std::vector<MapRay> randomRays(const TestMap& map, size_t count, uint64_t seed) {
     Random random(seed);
-    const glm::vec3 size = extent(map);
+    const glm::vec3 size = map.extent;
     const auto between = [&](double low, double high) { return static_cast<float>(random.between(low, high)); };
     std::vector<MapRay> rays(count);
     for (MapRay& ray : rays) {
@@ -84,7 +85,7 @@ std::vector<MapRay> randomRays(const TestMap& map, size_t count, uint64_t seed) 
 }
 
 std::vector<MapRay> specialRays(const TestMap& map) {
-    const glm::vec3 size = extent(map);
+    const glm::vec3 size = map.extent;
     const float high = size.z + 3;
     std::vector<MapRay> rays;
     // Along the axes and diagonals, from sample centres (every corner is met exactly), from between them, from without.
@@ -108,19 +109,20 @@ std::vector<MapRay> specialRays(const TestMap& map) {
 }
 
 View viewOf(const TestMap& map, glm::dvec3 eye, double azimuth, double pitch) {
-    const glm::dvec3 size(extent(map));
+    const glm::dvec3 size(map.extent);
     View view;
     view.eye = glm::dvec3(eye.x * size.x, -eye.y * size.y, eye.z * size.z);
     view.forward = {std::sin(azimuth) * std::cos(pitch), std::cos(azimuth) * std::cos(pitch), std::sin(pitch)};
     view.right = {std::cos(azimuth), -std::sin(azimuth), 0};
     view.up = glm::cross(view.right, view.forward);
-    view.width = 100;  // the last tiles reach beyond the picture
-    view.height = 50;
+    // The last tiles reach beyond the picture, and a beam runs exactly along the view axis.
+    view.width = 104;
+    view.height = 56;
     return view;
 }
 
 void expectFirstContact(const TestMap& map, const MapRay& ray, double t) {
-    if (passesBy(ray.eye.x, ray.direction.x, extent(map).x) || passesBy(ray.eye.y, ray.direction.y, extent(map).y))
+    if (passesBy(ray.eye.x, ray.direction.x, map.extent.x) || passesBy(ray.eye.y, ray.direction.y, map.extent.y))
         return;
     const double rounding = map.rounding(ray);
     const double earliest = bruteForceHit(map.codes.view(), ray, rounding);

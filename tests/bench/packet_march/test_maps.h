@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "common/grid.h"
 #include "common/view.h"
 #include "tests/bench/packet_march/packet_march.h"
@@ -11,15 +13,20 @@
 namespace terray::test {
 
 struct TestMap {
+    TestMap(std::string mapName, Grid<uint16_t> mapCodes);
+
     std::string name;
     Grid<uint16_t> codes;
+    glm::vec3 extent;  ///< of the box from the first sample, code 0, to the last one and the greatest code
+    float steepest;    ///< greatest difference of neighbours
 
     /// Codes by which a float march may misjudge heights for a ray that starts at `eye`: eight roundings of the heights
     /// and of the places that take part, the latter times the steepest slope.
     [[nodiscard]] float rounding(const MapRay& ray) const;
 };
 
-/// Mountains; white noise, where a patch's neighbours say nothing of it; terraces with cliffs; a plateau; one patch.
+/// Mountains; white noise, where a patch's neighbours say nothing of it; terraces with cliffs; a plateau; a
+/// shaft; one patch.
 [[nodiscard]] std::vector<TestMap> testMaps();
 
 /// Rays from above, beside and within the map in all directions, the same for the same seed.
