@@ -59,6 +59,7 @@ FOREIGN = {
     "GLFW": (r"GLFW/.*", {"client/view": MANY}),
     "Dear ImGui": (r"(imgui/)?imgui\w*\.h", {"client/view": MANY}),
     "GoogleTest": (r"(gtest|gmock)/.*", {}),
+    "Embree": (r"embree3/.*", {}),
     "AVX2 intrinsics": (r"immintrin\.h", {}),
 }
 
