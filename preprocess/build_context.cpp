@@ -1,6 +1,6 @@
 #include "preprocess/build_context.h"
 
-#include "preprocess/parallel.h"
+#include "common/parallel.h"
 
 namespace terray {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/imagery_tile.h"
-#include "preprocess/srgb.h"
+#include "common/srgb.h"
 
 namespace terray {
 namespace {

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/parallel.h"
 #include "common/version.h"
 #include "preprocess/bc1.h"
 #include "preprocess/build_context.h"
 #include "preprocess/height_pyramid.h"
 #include "preprocess/imagery_pyramid.h"
 #include "preprocess/output_directory.h"
-#include "preprocess/parallel.h"
 #include "preprocess/raster_layout.h"
 
 namespace terray {

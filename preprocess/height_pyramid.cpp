@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "common/error.h"
+#include "common/parallel.h"
 #include "preprocess/height_samples.h"
 #include "preprocess/level_store.h"
-#include "preprocess/parallel.h"
 
 namespace terray {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "common/error.h"
 #include "common/imagery_tile.h"
+#include "common/parallel.h"
 #include "preprocess/bc1.h"
 #include "preprocess/colour_samples.h"
 #include "preprocess/level_store.h"
-#include "preprocess/parallel.h"
 #include "preprocess/raster_layout.h"
 
 namespace terray {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "preprocess/parallel.h"
+#include "common/parallel.h"
 
 namespace terray {
 

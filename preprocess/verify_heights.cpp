@@ -5,8 +5,8 @@
 #include <unordered_set>
 
 #include "common/height_tile.h"
+#include "common/parallel.h"
 #include "preprocess/block_plan.h"
-#include "preprocess/parallel.h"
 #include "preprocess/verify_faults.h"
 
 namespace terray {

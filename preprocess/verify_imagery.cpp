@@ -3,7 +3,7 @@
 #include <unordered_set>
 
 #include "common/imagery_tile.h"
-#include "preprocess/parallel.h"
+#include "common/parallel.h"
 #include "preprocess/verify_faults.h"
 
 namespace terray {

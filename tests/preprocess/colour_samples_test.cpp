@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/imagery_tile.h"
-#include "preprocess/srgb.h"
+#include "common/srgb.h"
 
 namespace terray {
 namespace {

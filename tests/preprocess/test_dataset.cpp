@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/parallel.h"
 #include "common/pmtiles.h"
-#include "preprocess/parallel.h"
 
 namespace terray {
 namespace {

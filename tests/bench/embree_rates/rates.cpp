@@ -6,7 +6,7 @@
 #include <ctime>
 
 #include "common/check.h"
-#include "preprocess/parallel.h"
+#include "common/parallel.h"
 #include "tests/bench/packet_march/packet_march.h"
 
 namespace terray {

@@ -1,4 +1,4 @@
-#include "preprocess/srgb.h"
+#include "common/srgb.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "preprocess/parallel.h"
+#include "common/parallel.h"
 
 #include <algorithm>
 #include <exception>
