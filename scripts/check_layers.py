@@ -18,6 +18,7 @@ MANY = None  # any number of files
 # folder: what it may include of the project (folders, or single files), beside itself
 PROJECT = {
     "common": [],
+    "common/reference": ["common"],
     "preprocess": ["common"],
     "server": ["common"],
     "shaders/math": [],
@@ -28,7 +29,9 @@ PROJECT = {
     "client/output": ["common"],
     "client/engine": ["common", "client/stream", "client/overlay", "client/render"],
     "client/view": ["common", "client/stream", "client/render", "client/output", "client/engine"],
-    "client/bench": ["common", "client/stream", "client/render", "client/output", "client/engine"],
+    "client/bench": [
+        "common", "common/reference", "client/stream", "client/render", "client/output", "client/engine",
+    ],
 }
 PROJECT["tests"] = list(PROJECT)  # a test may look at everything
 CPP_FOLDERS = [folder for folder in PROJECT if not folder.startswith("shaders")]

@@ -18,4 +18,8 @@ ExitCode runTour(const std::vector<std::string>& arguments);
 /// documented in client/README.md, "Replay output".
 ExitCode runReplay(const std::vector<std::string>& arguments);
 
+/// `terray-bench image-error`: says how far pictures, or the frames of two replays, are from each other. Throws
+/// Error(unsupported) in a build without pictures.
+ExitCode runImageError(const std::vector<std::string>& arguments);
+
 }  // namespace terray

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <span>
 
+#include "common/percentile.h"
+
 namespace terray {
 namespace {
 
@@ -111,19 +113,13 @@ std::string fixed(double value, int decimals) {
     return text;
 }
 
-/// The smallest value that `percent` of all do not exceed (nearest rank). @param sorted  not empty
-double percentile(const std::vector<double>& sorted, double percent) {
-    const double rank = std::ceil(percent / 100 * static_cast<double>(sorted.size()));
-    return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
-}
-
 Json summaryOf(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
     return Json::Object{{"count", uint64_t{values.size()}},
-                        {"median", percentile(values, 50)},
-                        {"p95", percentile(values, 95)},
-                        {"p99", percentile(values, 99)},
+                        {"median", percentile<double>(values, 50)},
+                        {"p95", percentile<double>(values, 95)},
+                        {"p99", percentile<double>(values, 99)},
                         {"mean", sum / static_cast<double>(values.size())},
                         {"min", values.front()},
                         {"max", values.back()},
@@ -183,7 +179,7 @@ double FrameTable::median(const std::string& column) const {
     std::vector<double> sorted = values(column);
     if (sorted.empty()) return 0;
     std::sort(sorted.begin(), sorted.end());
-    return percentile(sorted, 50);
+    return percentile<double>(sorted, 50);
 }
 
 double FrameTable::sum(const std::string& column) const {

@@ -8,12 +8,18 @@
 #include <glm/vec4.hpp>
 
 #include "common/grid.h"
+#include "common/rgba.h"
 
 namespace terray {
 
 /// Writes a picture as PNG: 8-bit sRGB with alpha, row 0 at the top, through OpenImageIO. The file appears whole or not
 /// at all. Throws Error(output) when it cannot be written.
-void writePng(const std::filesystem::path& path, GridView<const std::array<uint8_t, 4>> srgb);
+void writePng(const std::filesystem::path& path, GridView<const Rgba> srgb);
+
+/// Reads a picture of 8 bits a channel, such as a PNG, through OpenImageIO: grey becomes red, green and blue, missing
+/// alpha 255; colours are as stored, not multiplied by alpha. Throws Error(input) when it is missing, damaged, or of
+/// another kind.
+[[nodiscard]] Grid<Rgba> readPicture(const std::filesystem::path& path);
 
 /// A picture with everything that is known of each pixel. All grids have one size; row 0 is the top.
 struct MeasuredPicture {
