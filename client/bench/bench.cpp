@@ -10,6 +10,8 @@ constexpr const char* kUsage =
     "  tour DATASET --out FLIGHT.json      writes the dataset's standard flight\n"
     "  replay DATASET --flight FLIGHT.json --out DIR\n"
     "                                      flies it at a fixed rate and writes what each frame cost\n"
+    "  error DATASET --flight FLIGHT.json --out DIR\n"
+    "                                      measures its pictures against the truth, and their time\n"
     "  image-error REFERENCE TEST          compares two pictures, or the frames of two replays: FLIP and PSNR\n"
     "Each command tells its options with --help; terray-bench --version says what was built.\n";
 
@@ -24,9 +26,10 @@ ExitCode runBench(const std::vector<std::string>& arguments) {
     const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
     if (command == "tour") return runTour(rest);
     if (command == "replay") return runReplay(rest);
+    if (command == "error") return runError(rest);
     if (command == "image-error") return runImageError(rest);
     const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
-    throw Error(ExitCode::usage, found + ", expected tour, replay or image-error (--help tells more)");
+    throw Error(ExitCode::usage, found + ", expected tour, replay, error or image-error (--help tells more)");
 }
 
 }  // namespace terray

@@ -18,6 +18,10 @@ ExitCode runTour(const std::vector<std::string>& arguments);
 /// documented in client/README.md, "Replay output".
 ExitCode runReplay(const std::vector<std::string>& arguments);
 
+/// `terray-bench error`: measures how far pictures of a flight are from the truth, and how long they take, for one or
+/// several settings. The files are documented in client/README.md, "Error against run time".
+ExitCode runError(const std::vector<std::string>& arguments);
+
 /// `terray-bench image-error`: says how far pictures, or the frames of two replays, are from each other. Throws
 /// Error(unsupported) in a build without pictures.
 ExitCode runImageError(const std::vector<std::string>& arguments);

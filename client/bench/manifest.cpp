@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <sys/resource.h>
 #include <sys/utsname.h>
@@ -71,6 +72,22 @@ Json describeFile(const std::filesystem::path& path) {
     char sum[16];
     std::snprintf(sum, sizeof(sum), "%08x", crc32c(std::as_bytes(std::span(text))));
     return Json::Object{{"path", path.string()}, {"crc32c", std::string(sum)}};
+}
+
+Json describeRun(const RunDescription& run, const GlStrings& graphics, const std::string& started) {
+    Json flightFile = describeFile(run.flightFile);
+    flightFile.set("name", run.flight.name);
+    flightFile.set("seconds", run.flight.seconds());
+    return Json::Object{
+        {"program", run.program},
+        {"build", describeBuild()},
+        {"machine", describeMachine()},
+        {"graphics", describeGraphics(graphics)},
+        {"dataset", Json::Object{{"path", run.dataset.string()}, {"contentHash", run.source.contentHash()}}},
+        {"flight", std::move(flightFile)},
+        {"protocol", run.protocol},
+        {"options", run.options},
+        {"started", started}};
 }
 
 std::string utcNow() {

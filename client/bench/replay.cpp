@@ -167,26 +167,14 @@ class Replay {
     double wallSeconds_ = 0;
 };
 
-Json describeRun(const ReplayOptions& options, const TileSource& source, const Flight& flight,
-                 const GlStrings& graphics, const std::string& started) {
-    Json flightFile = describeFile(options.flight);
-    flightFile.set("name", flight.name);
-    flightFile.set("seconds", flight.seconds());
-    return Json::Object{{"program", "terray-bench replay"},
-                        {"build", describeBuild()},
-                        {"machine", describeMachine()},
-                        {"graphics", describeGraphics(graphics)},
-                        {"dataset", Json::Object{{"path", options.dataset}, {"contentHash", source.contentHash()}}},
-                        {"flight", std::move(flightFile)},
-                        {"protocol", Json::Object{{"width", options.width},
-                                                  {"height", options.height},
-                                                  {"fps", options.framesPerSecond},
-                                                  {"waitForTiles", options.waitForTiles},
-                                                  {"warmUpFrames", options.warmUpFrames},
-                                                  {"statistics", !options.noStatistics},
-                                                  {"pictures", options.pictures}}},
-                        {"options", options.engine.toJson()},
-                        {"started", started}};
+Json protocolOf(const ReplayOptions& options) {
+    return Json::Object{{"width", options.width},
+                        {"height", options.height},
+                        {"fps", options.framesPerSecond},
+                        {"waitForTiles", options.waitForTiles},
+                        {"warmUpFrames", options.warmUpFrames},
+                        {"statistics", !options.noStatistics},
+                        {"pictures", options.pictures}};
 }
 
 void printResult(const Replay& replay, FrameTable& table, const RunDirectory& directory, bool statistics) {
@@ -218,7 +206,14 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
     RunDirectory directory(options.out, options.pictures, options.force);
     const HeadlessContext context;
     requireRendererFeatures();
-    const Json manifest = describeRun(options, *source, flight, context.strings(), utcNow());
+    const RunDescription description{.program = "terray-bench replay",
+                                     .dataset = options.dataset,
+                                     .source = *source,
+                                     .flightFile = options.flight,
+                                     .flight = flight,
+                                     .protocol = protocolOf(options),
+                                     .options = options.engine.toJson()};
+    const Json manifest = describeRun(description, context.strings(), utcNow());
     Replay replay(options, *source, flight, directory);
     replay.run();
     replay.table().finish();

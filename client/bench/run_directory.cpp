@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kMaps = "maps";
+
 void create(const fs::path& path) {
     std::error_code failure;
     fs::create_directories(path, failure);
@@ -19,11 +22,25 @@ void create(const fs::path& path) {
     if (failure) throw Error(ExitCode::output, "cannot make the directory " + path.string() + ": " + failure.message());
 }
 
+/// Removes a folder's pictures whose names begin so, and the folder if nothing else lies in it.
+void removeFolder(const fs::path& folder, std::string_view prefix) {
+    std::error_code failure;
+    if (!fs::is_directory(folder, failure)) return;
+    std::error_code unreadable;
+    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
+         entry.increment(unreadable)) {
+        const fs::path& file = entry->path();
+        const bool isPicture = file.extension() == ".png" || file.extension() == ".exr";
+        if (isPicture && file.filename().string().starts_with(prefix)) fs::remove(file, failure);
+    }
+    fs::remove(folder, failure);
+}
+
 }  // namespace
 
 RunDirectory::RunDirectory(fs::path path, bool withFrames, bool force) : path_(std::move(path)), existed_(false) {
     std::error_code ignored;  // what cannot be looked at is found out by create()
-    for (const fs::path& file : {table(), summary(), manifest(), frames()})
+    for (const fs::path& file : {table(), errors(), summary(), manifest(), frames(), path_ / kMaps})
         if (!force && fs::exists(file, ignored))
             throw Error(ExitCode::output, path_.string() + " holds an earlier run, found " + file.string() +
                                               " (give --force to replace it)");
@@ -42,19 +59,22 @@ RunDirectory::~RunDirectory() {
 
 void RunDirectory::removeRun() const {
     std::error_code failure;
-    for (const fs::path& file : {table(), summary(), manifest()}) fs::remove(file, failure);
-    if (!fs::is_directory(frames(), failure)) return;
-    std::error_code unreadable;
-    for (fs::directory_iterator entry(frames(), unreadable), end; !unreadable && entry != end;
-         entry.increment(unreadable)) {
-        const std::string name = entry->path().filename().string();
-        if (name.starts_with("frame_") && name.ends_with(".png")) fs::remove(entry->path(), failure);
-    }
-    fs::remove(frames(), failure);
+    for (const fs::path& file : {table(), errors(), summary(), manifest()}) fs::remove(file, failure);
+    removeFolder(frames(), "frame_");
+    removeFolder(path_ / kMaps, "map_");
 }
 
 fs::path RunDirectory::table() const {
     return path_ / "frames.csv";
+}
+
+fs::path RunDirectory::errors() const {
+    return path_ / "errors.csv";
+}
+
+fs::path RunDirectory::maps() const {
+    create(path_ / kMaps);
+    return path_ / kMaps;
 }
 
 fs::path RunDirectory::summary() const {

@@ -5,7 +5,8 @@
 
 namespace terray {
 
-/// The directory that a replay writes into: frames.csv, summary.json, manifest.json and frames/frame_00000.png, ...
+/// The directory that a run writes into: summary.json and manifest.json, a replay's frames.csv and
+/// frames/frame_00000.png, ..., and of a measurement of errors errors.csv and maps/.
 class RunDirectory {
   public:
     /// Creates the directory, unless it exists. Throws Error(output) when that fails, or when an earlier run lies in it
@@ -21,6 +22,9 @@ class RunDirectory {
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] std::filesystem::path table() const;
+    [[nodiscard]] std::filesystem::path errors() const;
+    /// Made when it is first asked for; its files begin with map_.
+    [[nodiscard]] std::filesystem::path maps() const;
     [[nodiscard]] std::filesystem::path summary() const;
     [[nodiscard]] std::filesystem::path manifest() const;
     [[nodiscard]] std::filesystem::path frames() const;

@@ -203,6 +203,10 @@ Json EngineCommandLine::toJson() const {
                         {"exaggeration", exaggeration_},
                         {"earth", earth_},
                         {"refraction", refraction_},
+                        {"pyramid", pyramid_},
+                        {"shadows", shadows_},
+                        {"sun-diameter", sunDiameter_},
+                        {"shadow-rays", shadowRays_},
                         {"overlay", overlay_.toJson()},
                         {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};

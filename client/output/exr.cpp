@@ -50,7 +50,7 @@ class ExrChannels {
 
     /// @param component  which of the Scalars that make up a Cell
     template <class Scalar, class Cell>
-    void add(const char* name, Imf::PixelType type, const Grid<Cell>& grid, size_t component = 0) {
+    void add(const std::string& name, Imf::PixelType type, const Grid<Cell>& grid, size_t component = 0) {
         TERRAY_CHECK(grid.size() == size_);
         static_assert(sizeof(Cell) % sizeof(Scalar) == 0);
         header_.channels().insert(name, Imf::Channel(type));
@@ -111,6 +111,19 @@ void writeExr(const std::filesystem::path& path, const MeasuredPicture& picture)
         const glm::dvec3& origin = picture.positionOrigin;
         channels.header().insert("terray:positionOrigin", Imf::V3dAttribute({origin.x, origin.y, origin.z}));
         encoded = channels.encode(path.string());
+    } catch (const std::exception& failure) {  // whatever OpenEXR throws
+        throw Error(ExitCode::output, "cannot encode " + path.string() + ": " + failure.what());
+    }
+    writeWholeFile(path, encoded);
+}
+
+void writeExr(const std::filesystem::path& path, std::span<const NamedChannel> channels) {
+    TERRAY_CHECK_OP(channels.size(), >, 0U);
+    Bytes encoded;
+    try {
+        ExrChannels exr(channels.front().values.size());
+        for (const NamedChannel& channel : channels) exr.add<float>(channel.name, Imf::FLOAT, channel.values);
+        encoded = exr.encode(path.string());
     } catch (const std::exception& failure) {  // whatever OpenEXR throws
         throw Error(ExitCode::output, "cannot encode " + path.string() + ": " + failure.what());
     }

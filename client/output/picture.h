@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -38,5 +40,14 @@ struct MeasuredPicture {
 /// (three doubles) belongs to position: floats alone would leave decimetres at UTM northings. The file appears whole or
 /// not at all. Throws Error(output) when it cannot be written.
 void writeExr(const std::filesystem::path& path, const MeasuredPicture& picture);
+
+/// A number of each pixel under a name.
+struct NamedChannel {
+    std::string name;
+    Grid<float> values;
+};
+
+/// Writes numbers as OpenEXR, ZIP-compressed, a float channel each; at least one, all of one size. Otherwise as above.
+void writeExr(const std::filesystem::path& path, std::span<const NamedChannel> channels);
 
 }  // namespace terray

@@ -47,6 +47,9 @@ class GroundCaster {
     /// Height of the ground, metres, not exaggerated, at a place of the map; none where it has none.
     [[nodiscard]] std::optional<double> heightAt(double x, double y) const;
 
+    /// Metres, as given.
+    [[nodiscard]] double floor() const { return floor_; }
+
   private:
     struct Ray;
     struct Square;

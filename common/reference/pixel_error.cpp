@@ -40,7 +40,8 @@ PixelError pixelError(const GroundCaster& truth, const View& view, const glm::iv
     const std::optional<double> depth = truth.meet(view, direction);
     if (!depth || !drawn.ground) {
         if (depth) return {.kind = PixelError::Kind::seeThrough, .trueDepth = *depth};
-        return {.kind = drawn.ground ? PixelError::Kind::coversSky : PixelError::Kind::sky};
+        if (!drawn.ground) return {.kind = PixelError::Kind::sky};
+        return {.kind = drawn.place.z < truth.floor() ? PixelError::Kind::base : PixelError::Kind::coversSky};
     }
     const double metres = std::abs(drawn.depth - *depth);
     const double alongRay =

@@ -87,6 +87,7 @@ TEST_F(PixelErrorTest, GroundAndSkyMayBeMistakenForEachOther) {
     const glm::ivec2 sky{50, 0}, ground{50, 80};
     EXPECT_EQ(pixelError(truth_, view_, sky, {}).kind, PixelError::Kind::sky);
     EXPECT_EQ(pixelError(truth_, view_, sky, {true, 1, {0, 0, 0}}).kind, PixelError::Kind::coversSky);
+    EXPECT_EQ(pixelError(truth_, view_, sky, {true, 1, {0, 0, -101}}).kind, PixelError::Kind::base);
     EXPECT_EQ(pixelError(truth_, view_, ground, {}).kind, PixelError::Kind::seeThrough);
     ErrorTotals totals;
     const std::vector<glm::ivec2> pixels{sky, sky, ground, ground};

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/bench/error_settings.h"
+#include "client/stream/flight.h"
+#include "common/reference/dataset_heights.h"
+#include "common/reference/ground_caster.h"
+#include "common/reference/picture_error.h"
+#include "common/reference/pixel_error.h"
+
+namespace terray {
+
+/// How errors are measured; two measurements compare only when all of it is the same.
+struct ErrorProtocol {
+    int width = 640;
+    int height = 360;
+    int frames = 8;           ///< spread evenly over the flight, ends included
+    int64_t pixels = 20'000;  ///< of each frame held against the truth; 0: all
+    int repeats = 5;          ///< of the timed frames, after one untimed round
+    int supersampling = 2;    ///< of reference pictures, samples along a pixel's side
+};
+
+/// What a setting came to.
+struct ErrorResult {
+    std::string curve;
+    std::string name;
+    std::vector<double> frameMs;  ///< of each repeat, the median over frames
+    uint64_t pixels = 0;          ///< held against the truth
+    uint64_t seeThrough = 0;
+    uint64_t coversSky = 0;
+    Spread errorPixels;  ///< see PixelError
+    Spread depthMetres;
+    Spread depthRelative;
+    Spread flip;                 ///< over the frames' means
+    std::optional<double> psnr;  ///< mean over frames that differ; none: all pictures are the reference's
+    uint64_t nodes = 0;          ///< of all frames
+    uint64_t lacking = 0;        ///< tiles that a frame wanted and memory did not hold, over all frames
+    uint64_t gpuBytes = 0;       ///< allocated for tiles, at the end
+};
+
+/// The errors of a frame's pixels, for maps; all of its pixels.
+using TakeErrors = std::function<void(const std::string& setting, int frame, const std::vector<PixelError>& errors)>;
+
+/// Measures settings over frames of a flight: time, distance of each pixel from the finest samples (GroundCaster), and
+/// of the picture from one of the same scene drawn with bilinear patches at a tolerance of 1/4 of a smaller pixel,
+/// supersampled and averaged in linear light.
+///
+/// GL thread only; a context must be current. All references are borrowed.
+class ErrorMeasurement {
+  public:
+    ErrorMeasurement(const TileSource& source, const ShaderLibrary& shaders, const Flight& flight,
+                     const ErrorProtocol& protocol);
+
+    /// Draws the reference pictures; first of all, and again for other scenes (sun, photo). Throws as Engine does.
+    void drawReferences(const EngineOptions& base);
+    /// @param take  null: no maps. Not null: the protocol asks for all pixels.
+    [[nodiscard]] ErrorResult measure(const ErrorSetting& setting, const TakeErrors& take);
+
+  private:
+    [[nodiscard]] Camera cameraOf(int frame) const;
+    void time(Engine& engine, ErrorResult& result) const;
+
+    const TileSource& source_;
+    const ShaderLibrary& shaders_;
+    const Flight& flight_;
+    ErrorProtocol protocol_;
+    DatasetHeights heights_;
+    GroundCaster truth_;
+    std::vector<Grid<Rgba>> references_;
+};
+
+/// A picture of supersampling^2 pixels for each, averaged in linear light.
+[[nodiscard]] Grid<Rgba> averaged(GridView<const Rgba> picture, int supersampling);
+
+}  // namespace terray
