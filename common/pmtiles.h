@@ -100,6 +100,33 @@ class PmtilesReader {
     std::unique_ptr<State> state_;
 };
 
+/// Options of both ways to write an archive.
+struct PmtilesWriteOptions {
+    PmtilesCompression internalCompression = PmtilesCompression::none;  ///< none or gzip (needs zlib)
+    size_t maxRootBytes = 16384 - kPmtilesHeaderBytes;                  ///< the specification's bound
+    size_t leafEntries = 4096;  ///< of a leaf directory, doubled until the root that points to the leaves fits
+};
+
+/// Tiles whose ids and lengths are known before their bytes are at hand. No two contents may be equal: nothing shares
+/// its bytes here.
+struct PmtilesContents {
+    /// Tells every tile, ids ascending in Hilbert order and lengths above 0; called more than once, with the same
+    /// answer.
+    std::function<void(const std::function<void(const TileId& id, uint32_t length)>& tell)> list;
+    /// Hands over the bytes of every tile in that order; called once.
+    std::function<void(const std::function<void(ByteView payload)>& write)> payloads;
+};
+
+/// Writes a clustered archive straight into place: by way of `path` with ".tmp" appended, synced and renamed. The same
+/// bytes as PmtilesWriter's for different contents, but the tiles are written once only, and memory holds one leaf and
+/// the packed directories (some 6 bytes a tile).
+///
+/// @param metadata  JSON text
+/// @param header    zoom range, bounds and centre are taken from it; everything else is filled in
+/// Throws Error(output) when the disk is full or not writable.
+void writePmtiles(const std::filesystem::path& path, const std::string& metadata, const PmtilesHeader& header,
+                  const PmtilesContents& contents, const PmtilesWriteOptions& options = {});
+
 /// Writes a clustered archive front to back. Tile data goes to a temporary file beside the target, because the
 /// directories that precede it are known only at the end; finish() puts the parts together, syncs, and renames. Without
 /// finish() nothing is left behind. Same tiles, same bytes. One thread.
@@ -107,11 +134,7 @@ class PmtilesReader {
 /// Throws Error(output) when the disk is full or not writable.
 class PmtilesWriter {
   public:
-    struct Options {
-        PmtilesCompression internalCompression = PmtilesCompression::none;  ///< none or gzip (needs zlib)
-        size_t maxRootBytes = 16384 - kPmtilesHeaderBytes;                  ///< the specification's bound
-        size_t leafEntries = 4096;  ///< of a leaf directory, doubled until the root that points to the leaves fits
-    };
+    using Options = PmtilesWriteOptions;
     explicit PmtilesWriter(std::filesystem::path path);
     PmtilesWriter(std::filesystem::path path, Options options);
     ~PmtilesWriter();

@@ -394,6 +394,34 @@ TEST(PmtilesWriter, ThrowsAndCleansUpWhenTheDiskIsFull) {
     EXPECT_EQ(folder.entries(), 0U);
 }
 
+TEST(WritePmtiles, MakesTheSameArchiveAsTheWriter) {
+    Tiles tiles = sampleTiles();
+    for (auto& [id, payload] : tiles) {  // no two alike
+        payload.resize(payload.size() + 8);
+        std::memcpy(payload.data() + payload.size() - 8, &id, 8);
+    }
+    const TemporaryDirectory folder;
+    const PmtilesContents contents = {.list =
+                                          [&](const auto& tell) {
+                                              for (const auto& [id, payload] : tiles)
+                                                  tell(*tileFromHilbert(id), static_cast<uint32_t>(payload.size()));
+                                          },
+                                      .payloads =
+                                          [&](const auto& write) {
+                                              for (const auto& [id, payload] : tiles) write(payload);
+                                          }};
+    for (const PmtilesWriteOptions options :
+         {PmtilesWriteOptions{}, {.maxRootBytes = 100, .leafEntries = 4}, {.maxRootBytes = 700, .leafEntries = 32}}) {
+        writePmtiles(folder / "b.pmtiles", kMetadata, askedHeader(), contents, options);
+        EXPECT_EQ(test::readFile(folder / "b.pmtiles"), archiveOf(tiles, options));
+        EXPECT_EQ(folder.entries(), 1u);
+    }
+    const PmtilesContents broken = {.list = contents.list,
+                                    .payloads = [](const auto&) { throw Error(ExitCode::interrupted, "stopped"); }};
+    EXPECT_THROW(writePmtiles(folder / "c.pmtiles", kMetadata, askedHeader(), broken), Error);
+    EXPECT_EQ(folder.entries(), 1u);
+}
+
 TEST(PmtilesWriterDeathTest, StopsOnMisuse) {
     const TemporaryDirectory folder;
     PmtilesWriter writer(folder / "a.pmtiles");
