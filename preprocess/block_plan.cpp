@@ -12,7 +12,7 @@ constexpr uint64_t kMiB = 1u << 20;
 /// Levels in a block: 8 x 8 tiles, so the next stage sees 1/64 of the data; a deeper block would take four times the
 /// memory.
 constexpr uint32_t kMaxDepth = 3;
-/// The program, its libraries and the index of tiles: 131 MB are resident before any work, nearly all of it GDAL,
+/// The program, its libraries and the index of blocks: 131 MB are resident before any work, nearly all of it GDAL,
 /// OpenImageIO and what these load (Debian 12).
 constexpr uint64_t kFixedBytes = 136 * kMiB;
 /// One tile being encoded: codes, floats, predictor and compressor.
@@ -102,33 +102,47 @@ uint64_t cacheShare(uint64_t memoryBytes) {
     return std::clamp(memoryBytes / 8, 32 * kMiB, 256 * kMiB);
 }
 
-WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights, const PyramidExtent* imagery) {
+namespace {
+
+/// Bytes that blocks may take; the memory that remains after the program itself and the reading library's cache.
+uint64_t blockBudget(uint64_t memoryBytes) {
     if (memoryBytes < kMinMemoryBytes)
         throw Error(ExitCode::usage, "--memory is " + std::to_string(memoryBytes / kMiB) + " MiB; at least " +
                                          std::to_string(kMinMemoryBytes / kMiB) + " MiB are needed (--memory 256M)");
-    WorkPlan plan;
-    plan.jobs = jobs;
-    plan.cacheBytes = cacheShare(memoryBytes);
-    const uint64_t budget = memoryBytes - kFixedBytes - plan.cacheBytes;
+    return memoryBytes - kFixedBytes - cacheShare(memoryBytes);
+}
 
+}  // namespace
+
+WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights, const PyramidExtent* imagery) {
+    const uint64_t budget = blockBudget(memoryBytes);
     const uint32_t wanted = busyDepth(heights, jobs);
-    plan.heightDepth = fittingDepth(wanted, jobs, budget, heightBlockBytes);
-    uint64_t blockBytes = heightBlockBytes(plan.heightDepth);
-    bool smaller = plan.heightDepth < wanted;
+    const uint32_t heightDepth = fittingDepth(wanted, jobs, budget, heightBlockBytes);
+    bool smaller = heightDepth < wanted;
+    std::optional<uint32_t> imageryDepth;
     if (imagery != nullptr) {
         const uint32_t wantedImagery = busyDepth(*imagery, jobs);
-        plan.imageryDepth = fittingDepth(wantedImagery, jobs, budget, imageryBlockBytes);
-        blockBytes = std::max(blockBytes, imageryBlockBytes(plan.imageryDepth));
-        smaller = smaller || plan.imageryDepth < wantedImagery;
+        imageryDepth = fittingDepth(wantedImagery, jobs, budget, imageryBlockBytes);
+        smaller = smaller || *imageryDepth < wantedImagery;
     }
-    const uint64_t fit = std::max<uint64_t>(budget / blockBytes, 1);
-    plan.jobs = static_cast<int>(std::min<uint64_t>(static_cast<uint64_t>(jobs), fit));
-
+    WorkPlan plan = planResumedWork(jobs, memoryBytes, heightDepth, imageryDepth);
     if (smaller || plan.jobs < jobs)
         plan.note = "to stay within " + std::to_string(memoryBytes / kMiB) + " MiB: blocks of " +
                     blockText(plan.heightDepth) + " height tiles" +
                     (imagery != nullptr ? ", " + blockText(plan.imageryDepth) + " imagery tiles" : "") + ", " +
                     std::to_string(plan.jobs) + " jobs (--memory)";
+    return plan;
+}
+
+WorkPlan planResumedWork(int jobs, uint64_t memoryBytes, uint32_t heightDepth, std::optional<uint32_t> imageryDepth) {
+    WorkPlan plan;
+    plan.heightDepth = heightDepth;
+    plan.imageryDepth = imageryDepth.value_or(0);
+    plan.cacheBytes = cacheShare(memoryBytes);
+    uint64_t blockBytes = heightBlockBytes(heightDepth);
+    if (imageryDepth) blockBytes = std::max(blockBytes, imageryBlockBytes(*imageryDepth));
+    const uint64_t fit = std::max<uint64_t>(blockBudget(memoryBytes) / blockBytes, 1);
+    plan.jobs = static_cast<int>(std::min<uint64_t>(static_cast<uint64_t>(jobs), fit));
     return plan;
 }
 

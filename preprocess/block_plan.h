@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,9 @@ inline constexpr uint64_t kMinMemoryBytes = 256u << 20;
 /// Throws Error(usage) below kMinMemoryBytes.
 [[nodiscard]] WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights,
                                 const PyramidExtent* imagery);
+/// As planWork, for a build whose blocks were chosen by an earlier run: only the jobs are.
+[[nodiscard]] WorkPlan planResumedWork(int jobs, uint64_t memoryBytes, uint32_t heightDepth,
+                                       std::optional<uint32_t> imageryDepth);
 /// What planWork will leave to the reading library's cache, for sources that are opened before the plan can be made.
 [[nodiscard]] uint64_t cacheShare(uint64_t memoryBytes);
 

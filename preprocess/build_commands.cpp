@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include <unistd.h>
-
 #include "common/command_line.h"
 #include "common/json.h"
 #include "preprocess/block_plan.h"
@@ -22,27 +20,22 @@ namespace {
 constexpr int64_t kMaxJobs = 1024;
 constexpr int64_t kMaxSynthSize = int64_t{1} << 29;
 
-/// Half of the machine's memory: the other half is for the file cache and for others.
-uint64_t defaultMemoryBytes() {
-    const auto bytes =
-        static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
-    return std::max(bytes / 2, kMinMemoryBytes);
-}
-
 /// Options that build and synth share.
 struct SharedOptions {
     std::string out;
     int64_t jobs = machineJobs();
-    uint64_t memoryBytes = defaultMemoryBytes();
+    uint64_t memoryBytes = uint64_t{1} << 30;
     bool force = false;
+    bool resume = false;
     bool quiet = false;
     bool jsonProgress = false;
 
     void declare(CommandLine& line) {
         line.option("--out", out, "DIR", "the dataset's directory, made by this run").required();
         line.option("--jobs", jobs, "N", "threads; default: one for each core");
-        line.bytes("--memory", memoryBytes, "memory to stay within; default: half of the machine's");
+        line.bytes("--memory", memoryBytes, "memory to stay within, whatever the size of the sources; default: 1G");
         line.flag("--force", force, "replace the dataset that --out holds");
+        line.flag("--resume", resume, "go on with a build of --out that was stopped or killed, if there is one");
         line.flag("--quiet", quiet, "print nothing but errors");
         line.flag("--json-progress", jsonProgress, "print progress and result as one JSON object for each line");
     }
@@ -57,7 +50,7 @@ struct SharedOptions {
         if (memoryBytes < kMinMemoryBytes)
             throw Error(ExitCode::usage, "--memory is " + std::to_string(memoryBytes) + " bytes; at least " +
                                              std::to_string(kMinMemoryBytes >> 20) + " MiB are needed (--memory 256M)");
-        OutputDirectory::check(out, force);
+        OutputDirectory::check(out, {.replace = force, .resume = resume});
     }
     [[nodiscard]] ProgressStyle style() const {
         if (quiet) return ProgressStyle::silent;
@@ -67,6 +60,7 @@ struct SharedOptions {
                                        BuildObserver& observer) const {
         return {.out = out,
                 .replace = force,
+                .resume = resume,
                 .jobs = static_cast<int>(jobs),
                 .memoryBytes = memoryBytes,
                 .optionsText = optionsText,

@@ -14,8 +14,8 @@ class BuildObserver {
     virtual ~BuildObserver() = default;
     /// A decision that the user should know of.
     virtual void note(const std::string& text) = 0;
-    /// A stage of `blocks` blocks begins, such as "heights 7 to 4".
-    virtual void stageBegins(const std::string& name, uint64_t blocks) = 0;
+    /// A stage of `blocks` blocks begins, such as "heights 7 to 4"; an earlier run did `done` of them.
+    virtual void stageBegins(const std::string& name, uint64_t blocks, uint64_t done) = 0;
     /// One more block of the current stage is done; tiles and payload bytes so far, of the whole build.
     virtual void blockDone(uint64_t tiles, uint64_t bytes) = 0;
     /// All stages are done, or the build has failed.
@@ -26,7 +26,7 @@ class BuildObserver {
 class SilentObserver final : public BuildObserver {
   public:
     void note(const std::string&) override {}
-    void stageBegins(const std::string&, uint64_t) override {}
+    void stageBegins(const std::string&, uint64_t, uint64_t) override {}
     void blockDone(uint64_t, uint64_t) override {}
 };
 

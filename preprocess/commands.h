@@ -9,7 +9,7 @@
 namespace terray {
 
 /// Runs terray-preprocess as if called with `arguments` (without the program's name); output goes to stdout and stderr.
-/// @param stop  once true, the work ends soon with Error(interrupted) and leaves nothing behind
+/// @param stop  once true, the work ends soon with Error(interrupted); what a build has done stays for --resume
 /// Throws Error, which is for main to print.
 [[nodiscard]] ExitCode runPreprocess(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
 

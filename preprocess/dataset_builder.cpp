@@ -9,6 +9,9 @@
 #include "common/version.h"
 #include "preprocess/bc1.h"
 #include "preprocess/build_context.h"
+#include "preprocess/build_heading.h"
+#include "preprocess/build_journal.h"
+#include "preprocess/dataset_archives.h"
 #include "preprocess/height_pyramid.h"
 #include "preprocess/imagery_pyramid.h"
 #include "preprocess/output_directory.h"
@@ -54,6 +57,12 @@ DatasetMetadata describe(const HeightGridInfo& info, const Tiling& tiling, const
     return metadata;
 }
 
+/// Why a build cannot be gone on with, and what to do.
+[[noreturn]] void refuseResume(const std::filesystem::path& out, const std::string& reason) {
+    throw Error(ExitCode::usage, "cannot resume the build of " + out.string() + ": " + reason +
+                                     "; give what it was begun with, or start it anew, without --resume");
+}
+
 /// One build, from sources to a directory with its final name.
 class DatasetBuild {
   public:
@@ -62,12 +71,12 @@ class DatasetBuild {
           request_(request),
           observer_(request.observer != nullptr ? *request.observer : silent_),
           stop_(request.stop != nullptr ? *request.stop : never_),
-          output_(request.out, request.replace) {
+          output_(request.out, {.replace = request.replace, .resume = request.resume}) {
         const HeightGridInfo& info = heights.info();
         const Tiling tiling{.west = info.west,
                             .north = info.north,
                             .finestSpacing = info.spacing,
-                            .finestLevel = Tiling::levelFor(std::max(info.size.width, info.size.height))};
+                            .finestLevel = heightExtent(info).finestLevel};
         summary_.metadata = describe(info, tiling, request);
     }
 
@@ -82,12 +91,20 @@ class DatasetBuild {
             metadata.imageryBounds = overlapOf(photo->bounds(), metadata.groundBounds());
             metadata.sources.insert(metadata.sources.end(), photo->files().begin(), photo->files().end());
         }
-        buildTiles(photo.get());
+        if (output_.isPublished()) {
+            takeWhole();
+        } else {
+            BuildJournal journal(output_.journal());
+            const WorkPlan work = planOrTakeUp(journal, photo.get());
+            buildTiles(photo.get(), work, journal);
+        }
         throwIfStopped(stop_);
         output_.commit();
         finishSummary();
         return std::move(summary_);
     }
+
+    [[nodiscard]] bool isResumable() const { return output_.isKept(); }
 
   private:
     void requireOverlap(const ColourSource& photo) const {
@@ -97,53 +114,113 @@ class DatasetBuild {
             throw Error(ExitCode::input, "the imagery is too fine for the heights: more than 31 levels are needed");
     }
 
-    [[nodiscard]] WorkPlan plan(const ColourSource* photo) const {
-        const PyramidExtent heights{summary_.metadata.tiling.finestLevel, summary_.metadata.samples};
-        if (photo == nullptr) return planWork(request_.jobs, request_.memoryBytes, heights, nullptr);
-        const PyramidExtent imagery =
-            imageryExtent(summary_.metadata.tiling, summary_.metadata.samples, photo->level());
-        return planWork(request_.jobs, request_.memoryBytes, heights, &imagery);
+    [[nodiscard]] PyramidExtent imageryExtentOf(const ColourSource& photo) const {
+        return imageryExtent(summary_.metadata.tiling, summary_.metadata.samples, photo.level());
     }
 
-    void buildTiles(const ColourSource* photo) {
-        DatasetMetadata& metadata = summary_.metadata;
-        const WorkPlan work = plan(photo);
+    [[nodiscard]] WorkPlan plan(const ColourSource* photo) const {
+        const PyramidExtent heights = heightExtent(heights_.info());
+        std::optional<PyramidExtent> imagery;
+        if (photo != nullptr) imagery = imageryExtentOf(*photo);
+        WorkPlan work = planWork(request_.jobs, request_.memoryBytes, heights, imagery ? &*imagery : nullptr);
+        work.heightDepth = request_.blockDepth.value_or(work.heightDepth);
+        work.imageryDepth = request_.blockDepth.value_or(work.imageryDepth);
+        return work;
+    }
+
+    /// The plan of a build that begins, which goes into the journal, or of one that is gone on with.
+    WorkPlan planOrTakeUp(BuildJournal& journal, const ColourSource* photo) {
+        if (!journal.empty()) return takeUp(journal, photo);
+        if (request_.resume) observer_.note("there is nothing to resume: the build starts from the beginning");
+        WorkPlan work = plan(photo);
         if (!work.note.empty()) observer_.note(work.note);
+        journal.commit(encodeHeading(makeHeading(summary_.metadata, work.heightDepth, work.imageryDepth)), {});
+        journal.sync();
+        return work;
+    }
+
+    WorkPlan takeUp(BuildJournal& journal, const ColourSource* photo) const {
+        const auto begun = decodeHeading(journal.read(0));
+        if (!begun.ok()) refuseResume(request_.out, begun.failure().message);
+        requireSame(*begun);
+        std::optional<uint32_t> imageryDepth;
+        if (photo != nullptr) imageryDepth = begun->imageryDepth;
+        return planResumedWork(request_.jobs, request_.memoryBytes, begun->heightDepth, imageryDepth);
+    }
+
+    void requireSame(const BuildHeading& begun) const {
+        std::string changes;
+        for (const std::string& change : changesSince(begun, makeHeading(summary_.metadata, 0, 0)))
+            changes += (changes.empty() ? "" : "; ") + change;
+        if (!changes.empty()) refuseResume(request_.out, changes);
+    }
+
+    /// For a dataset that is whole already, if it is the one asked for.
+    void takeWhole() {
+        const DatasetMetadata whole = openDataset(request_.out).metadata;
+        DatasetMetadata known = whole;
+        const DatasetMetadata unbuilt;
+        known.heightTiles = unbuilt.heightTiles;
+        known.imageryTiles = unbuilt.imageryTiles;
+        known.holeSamples = unbuilt.holeSamples;
+        known.minHeight = unbuilt.minHeight;
+        known.maxHeight = unbuilt.maxHeight;
+        known.levelErrors = unbuilt.levelErrors;
+        requireSame(makeHeading(known, 0, 0));
+        observer_.note("there is nothing left to do: " + request_.out.string() + " is whole");
+        summary_.metadata = whole;
+    }
+
+    void buildTiles(const ColourSource* photo, const WorkPlan& work, BuildJournal& journal) {
+        DatasetMetadata& metadata = summary_.metadata;
         summary_.jobs = work.jobs;
         BuildContext context{.jobs = work.jobs,
                              .workDirectory = output_.workDirectory(),
                              .stop = stop_,
                              .observer = observer_,
-                             .times = times_};
+                             .times = times_,
+                             .journal = journal,
+                             .firstTileDone = [this] { output_.keep(true); }};
 
-        TileSpill heightTiles(output_.workDirectory() / "height-tiles");
-        const HeightTotals totals = buildHeightPyramid(heights_, request_.blockDepth.value_or(work.heightDepth),
-                                                       metadata.quantum, heightTiles, context);
+        PyramidBlocks heightBlocks(Pyramid::heights, heightExtent(heights_.info()), context);
+        const HeightTotals totals =
+            buildHeightPyramid(heights_, work.heightDepth, metadata.quantum, heightBlocks, context);
         metadata.heightTiles = totals.tiles;
         metadata.holeSamples = totals.holeSamples;
         metadata.minHeight = totals.minHeight;
         metadata.maxHeight = totals.maxHeight;
         metadata.levelErrors = totals.levelErrors;
         if (photo != nullptr) {
-            TileSpill imageryTiles(output_.workDirectory() / "imagery-tiles");
-            metadata.imageryTiles =
-                buildImageryPyramid(*photo, metadata.tiling, metadata.samples,
-                                    request_.blockDepth.value_or(work.imageryDepth), imageryTiles, context);
-            writeArchive(imageryTiles, kImageryFile, *metadata.imageryLevel);
+            PyramidBlocks imageryBlocks(Pyramid::imagery, imageryExtentOf(*photo), context);
+            buildImagery(*photo, work, imageryBlocks, context);
+            writeArchive(imageryBlocks, kImageryFile, *metadata.imageryLevel);
         }
-        writeArchive(heightTiles, kHeightsFile, metadata.tiling.finestLevel);
+        writeArchive(heightBlocks, kHeightsFile, metadata.tiling.finestLevel);
     }
 
-    void writeArchive(TileSpill& tiles, const char* name, uint32_t finestLevel) {
-        throwIfStopped(stop_);
-        observer_.stageBegins(std::string("writing ") + name, 1);
-        {
-            const StepTimer timer(times_, BuildStep::write);
-            PmtilesWriter writer(output_.directory() / name);
-            tiles.writeTo(writer, stop_);
-            writer.finish(toJson(summary_.metadata).dump(), archiveHeader(summary_.metadata, finestLevel));
+    void buildImagery(const ColourSource& photo, const WorkPlan& work, PyramidBlocks& blocks, BuildContext& context) {
+        DatasetMetadata& metadata = summary_.metadata;
+        try {
+            metadata.imageryTiles =
+                buildImageryPyramid(photo, metadata.tiling, metadata.samples, work.imageryDepth, blocks, context);
+        } catch (const Error& error) {
+            // No texel over the heights: that is so however often it is tried.
+            if (error.code() == ExitCode::georeference) output_.keep(false);
+            throw;
         }
-        observer_.blockDone(summary_.metadata.heightTiles + summary_.metadata.imageryTiles, tiles.bytes());
+    }
+
+    void writeArchive(PyramidBlocks& blocks, const char* name, uint32_t finestLevel) {
+        throwIfStopped(stop_);
+        observer_.stageBegins(std::string("writing ") + name, 1, 0);
+        // An archive that has its name is whole, if an earlier run gave it that.
+        if (!std::filesystem::exists(output_.directory() / name)) {
+            const StepTimer timer(times_, BuildStep::write);
+            writePmtiles(output_.directory() / name, toJson(summary_.metadata).dump(),
+                         archiveHeader(summary_.metadata, finestLevel), blocks.contents());
+        }
+        blocks.discard();
+        observer_.blockDone(summary_.metadata.heightTiles + summary_.metadata.imageryTiles, blocks.bytes());
     }
 
     void finishSummary() {
@@ -196,7 +273,14 @@ PmtilesHeader archiveHeader(const DatasetMetadata& metadata, uint32_t finestLeve
 
 BuildSummary buildDataset(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
     requireUsable(heights.info());
-    return DatasetBuild(heights, request).run(openPhoto);
+    DatasetBuild build(heights, request);
+    try {
+        return build.run(openPhoto);
+    } catch (const Error& error) {
+        if (!build.isResumable() || error.code() == ExitCode::usage) throw;
+        throw Error(error.code(), std::string(error.what()) + " (what is done is kept in " + request.out.string() +
+                                      ".partial; the same command with --resume goes on from there)");
+    }
 }
 
 }  // namespace terray

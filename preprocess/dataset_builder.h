@@ -22,8 +22,9 @@ using OpenPhoto = std::function<std::unique_ptr<ColourSource>(const Tiling& tili
 struct BuildRequest {
     std::filesystem::path out;
     bool replace = false;  ///< an old dataset at `out` may go (--force)
+    bool resume = false;   ///< an unfinished build beside `out` may be gone on with (--resume)
     int jobs = 1;
-    uint64_t memoryBytes = uint64_t{2} << 30;
+    uint64_t memoryBytes = uint64_t{1} << 30;
     std::string optionsText;                  ///< DatasetMetadata::options
     std::optional<double> quantum;            ///< metres; none: chosen by chooseQuantum()
     std::optional<uint32_t> blockDepth;       ///< levels in a block instead of the planned ones
@@ -44,8 +45,11 @@ struct BuildSummary {
 
 /// Builds a dataset directory from heights and, if `openPhoto` is there, a photo. All or nothing: see OutputDirectory.
 ///
-/// The same sources and options give the same bytes, whatever the jobs, the memory or the order in which threads run.
-/// Throws Error: usage (memory), input, output, georeference, unsupported, interrupted.
+/// The same sources and options give the same bytes, whatever the jobs, the memory or the order in which threads run,
+/// and however often a build was killed and gone on with. What ends a build after its first block is on the disk, an
+/// Error or the process's death, leaves OUT.partial for a later call with `resume`, which refuses (Error(usage)) when
+/// the sources, the options or the program are others than those that began it. Throws Error: usage (memory, resume),
+/// input, output, georeference, unsupported, interrupted.
 [[nodiscard]] BuildSummary buildDataset(const HeightSource& heights, const OpenPhoto& openPhoto,
                                         const BuildRequest& request);
 

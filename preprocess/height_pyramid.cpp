@@ -29,12 +29,12 @@ struct StoredLevel {
 /// A block in work.
 struct Block {
     BlockStage stage;
-    TileId top;
+    BlockRecord& record;                      ///< what it leaves
     Grid<float> finest;                       ///< the source's samples, first stage only
     std::vector<HeightSamples> levels;        ///< [i] lies i + 1 levels above the bottom
     std::vector<Grid<HeightRecord>> records;  ///< [i] lies i levels above the bottom, by tile within the block
 
-    [[nodiscard]] GridRect window() const { return blockWindow(stage, top, kHeightApron); }
+    [[nodiscard]] GridRect window() const { return blockWindow(stage, record.top, kHeightApron); }
     /// Samples of the level `above` the bottom. Finest samples are their own bounds.
     [[nodiscard]] HeightViews views(uint32_t above) const {
         if (above == 0) return {finest.view(), finest.view(), finest.view()};
@@ -43,19 +43,19 @@ struct Block {
     [[nodiscard]] int64_t tilesAcross(uint32_t above) const { return int64_t{1} << (stage.depth - above); }
     [[nodiscard]] TileId tile(uint32_t above, int64_t column, int64_t row) const {
         const int64_t across = tilesAcross(above);
-        return {stage.bottom - above, static_cast<uint32_t>(top.x * across + column),
-                static_cast<uint32_t>(top.y * across + row)};
+        return {stage.bottom - above, static_cast<uint32_t>(record.top.x * across + column),
+                static_cast<uint32_t>(record.top.y * across + row)};
     }
 };
 
 class HeightPyramid {
   public:
-    HeightPyramid(const HeightSource& source, double quantum, TileSpill& spill, BuildContext& context)
+    HeightPyramid(const HeightSource& source, double quantum, PyramidBlocks& blocks, BuildContext& context)
         : source_(source),
           quantum_(quantum),
-          spill_(spill),
+          blocks_(blocks),
           context_(context),
-          extent_{Tiling::levelFor(std::max(source.info().size.width, source.info().size.height)), source.info().size},
+          extent_(heightExtent(source.info())),
           readers_(static_cast<size_t>(context.jobs)) {
         totals_.levelErrors.resize(extent_.finestLevel + 1, 0);
         totals_.minHeight = std::numeric_limits<double>::infinity();
@@ -68,8 +68,11 @@ class HeightPyramid {
             if (stage.top() > 0)
                 above_ = std::make_unique<StoredLevel>(
                     context_.workDirectory / ("heights-" + std::to_string(stage.top())), extent_.tilesAt(stage.top()));
-            runStage(context_, "heights", extent_, stage,
-                     [&](const TileId& top, int worker) { buildBlock(stage, top, worker); });
+            blocks_.runStage(stage,
+                             {.build = [&](BlockRecord& record, int worker) { buildBlock(stage, record, worker); },
+                              .take = [&](const BlockRecord& record) { take(record); },
+                              .level = above_ ? &above_->samples.file() : nullptr});
+            if (below_) below_->samples.file().discard();
             std::swap(below_, above_);
         }
         if (totals_.tiles == 0)
@@ -78,8 +81,9 @@ class HeightPyramid {
     }
 
   private:
-    void buildBlock(const BlockStage& stage, const TileId& top, int worker) {
-        Block block{.stage = stage, .top = top, .finest = {}, .levels = {}, .records = {}};
+    void buildBlock(const BlockStage& stage, BlockRecord& record, int worker) {
+        Block block{.stage = stage, .record = record, .finest = {}, .levels = {}, .records = {}};
+        record.levelErrors.resize(stage.depth + 1, 0);
         const bool hasSurface = stage.first ? readSource(block, worker) : readBelow(block);
         if (!hasSurface) return;
         halveUpwards(block);
@@ -134,8 +138,7 @@ class HeightPyramid {
         int64_t holes = 0;
         for (int64_t y = 0; y < heights.height(); ++y)
             holes += std::ranges::count_if(heights.row(y), [](float height) { return std::isnan(height); });
-        const std::scoped_lock lock(totalsMutex_);
-        totals_.holeSamples += static_cast<uint64_t>(holes);
+        block.record.holeSamples = static_cast<uint64_t>(holes);
         return holes < core.width * core.height;
     }
 
@@ -222,47 +225,67 @@ class HeightPyramid {
             record = tile->record;
             payload = encodeHeightTile(*tile);
         }
-        storeTile(context_, spill_, input.id, payload);
-        count(input.id.level, record);
+        measure(block, record, input.id.level);
+        blocks_.store(block.record, input.id, payload);
         return record;
     }
 
-    void count(uint32_t level, const HeightRecord& record) {
-        const std::scoped_lock lock(totalsMutex_);
-        ++totals_.tiles;
-        totals_.minHeight = std::min(totals_.minHeight, static_cast<double>(record.minHeight));
-        totals_.maxHeight = std::max(totals_.maxHeight, static_cast<double>(record.maxHeight));
-        totals_.levelErrors[level] = std::max(totals_.levelErrors[level], static_cast<double>(record.error));
+    /// Adds a tile to what its block says of all of its tiles.
+    static void measure(const Block& block, const HeightRecord& tile, uint32_t level) {
+        BlockRecord& record = block.record;
+        const bool isFirst = record.tiles.empty();
+        record.minHeight = isFirst ? tile.minHeight : std::min(record.minHeight, tile.minHeight);
+        record.maxHeight = isFirst ? tile.maxHeight : std::max(record.maxHeight, tile.maxHeight);
+        float& error = record.levelErrors[level - block.stage.top()];
+        error = std::max(error, tile.error);
     }
 
     /// Gives the block's top level to the stage above.
     void handOver(const Block& block) {
-        const HeightRecord record = block.records.back().at(0, 0);
-        if (!above_ || !record.exists) return;
+        block.record.topRecord = block.records.back().at(0, 0);
+        if (!above_ || !block.record.topRecord.exists) return;
         const StepTimer timer(context_.times, BuildStep::write);
         const HeightViews core =
             block.views(block.stage.depth).window(coreInBlock(block.stage, block.stage.depth, kHeightApron, 0, 0));
-        above_->samples.write(block.top.x, block.top.y, std::array{core.mean, core.lowest, core.highest});
-        above_->records.at(block.top.x, block.top.y) = record;
+        above_->samples.write(block.record.top.x, block.record.top.y, std::array{core.mean, core.lowest, core.highest});
+    }
+
+    /// Adds a finished block to the totals and to what the stage above may read.
+    void take(const BlockRecord& record) {
+        totals_.holeSamples += record.holeSamples;
+        if (record.tiles.empty()) return;
+        totals_.tiles += record.tiles.size();
+        totals_.minHeight = std::min(totals_.minHeight, static_cast<double>(record.minHeight));
+        totals_.maxHeight = std::max(totals_.maxHeight, static_cast<double>(record.maxHeight));
+        for (size_t i = 0; i < record.levelErrors.size(); ++i) {
+            double& error = totals_.levelErrors.at(record.top.level + i);
+            error = std::max(error, static_cast<double>(record.levelErrors[i]));
+        }
+        if (!above_ || !record.topRecord.exists) return;
+        above_->samples.take(record.top.x, record.top.y);
+        above_->records.at(record.top.x, record.top.y) = record.topRecord;
     }
 
     const HeightSource& source_;
     double quantum_;
-    TileSpill& spill_;
+    PyramidBlocks& blocks_;
     BuildContext& context_;
     PyramidExtent extent_;
     std::vector<std::unique_ptr<HeightReader>> readers_;  ///< one for each worker, opened at its first block
     std::unique_ptr<StoredLevel> below_;                  ///< read by the running stage
     std::unique_ptr<StoredLevel> above_;                  ///< written by it
-    std::mutex totalsMutex_;
     HeightTotals totals_;
 };
 
 }  // namespace
 
-HeightTotals buildHeightPyramid(const HeightSource& source, uint32_t depth, double quantum, TileSpill& spill,
+PyramidExtent heightExtent(const HeightGridInfo& info) {
+    return {Tiling::levelFor(std::max(info.size.width, info.size.height)), info.size};
+}
+
+HeightTotals buildHeightPyramid(const HeightSource& source, uint32_t depth, double quantum, PyramidBlocks& blocks,
                                 BuildContext& context) {
-    return HeightPyramid(source, quantum, spill, context).build(depth);
+    return HeightPyramid(source, quantum, blocks, context).build(depth);
 }
 
 }  // namespace terray

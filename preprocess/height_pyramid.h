@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "preprocess/build_context.h"
+#include "preprocess/pyramid_blocks.h"
 #include "preprocess/raster_source.h"
 
 namespace terray {
@@ -20,12 +20,14 @@ struct HeightTotals {
 /// Heights beyond this are an undeclared nodata value, not ground: 10,000 km.
 inline constexpr float kGreatestHeight = 1e7f;
 
-/// Builds all tiles of the height pyramid from one pass over the source, block by block, and spills them.
+/// Builds all tiles of the height pyramid from one pass over the source, block by block, into `blocks`.
 ///
 /// @param depth    levels in a block (planWork)
 /// @param quantum  metres, of HeightEncoding
+/// @param blocks   new, with the extent that heightExtent() tells
 /// Throws Error(input) when the source cannot be read, holds heights beyond kGreatestHeight, or has no height at all.
 [[nodiscard]] HeightTotals buildHeightPyramid(const HeightSource& source, uint32_t depth, double quantum,
-                                              TileSpill& spill, BuildContext& context);
+                                              PyramidBlocks& blocks, BuildContext& context);
+[[nodiscard]] PyramidExtent heightExtent(const HeightGridInfo& info);
 
 }  // namespace terray

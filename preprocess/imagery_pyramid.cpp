@@ -20,17 +20,17 @@ constexpr int64_t kBandRows = 64;
 /// A block in work.
 struct Block {
     BlockStage stage;
-    TileId top;
+    BlockRecord& record;                ///< what it leaves
     Grid<Rgba> finest;                  ///< the source's texels, first stage only
     std::vector<ColourSamples> levels;  ///< [i] lies i + 1 levels above the bottom
     std::vector<Grid<uint8_t>> exists;  ///< [i] lies i levels above the bottom: which tiles have photo
 
-    [[nodiscard]] GridRect window() const { return blockWindow(stage, top, kImageryGutter); }
+    [[nodiscard]] GridRect window() const { return blockWindow(stage, record.top, kImageryGutter); }
     [[nodiscard]] int64_t tilesAcross(uint32_t above) const { return int64_t{1} << (stage.depth - above); }
     [[nodiscard]] TileId tile(uint32_t above, int64_t column, int64_t row) const {
         const int64_t across = tilesAcross(above);
-        return {stage.bottom - above, static_cast<uint32_t>(top.x * across + column),
-                static_cast<uint32_t>(top.y * across + row)};
+        return {stage.bottom - above, static_cast<uint32_t>(record.top.x * across + column),
+                static_cast<uint32_t>(record.top.y * across + row)};
     }
     [[nodiscard]] bool photoIn(uint32_t above, const GridRect& rect) const {
         return above == 0 ? anyPhoto(finest.view().window(rect)) : anyPhoto(levels[above - 1].views().window(rect));
@@ -80,12 +80,12 @@ class RootMips {
 
 class ImageryPyramid {
   public:
-    ImageryPyramid(const ColourSource& source, const PyramidExtent& extent, const GridRect& photo, TileSpill& spill,
-                   BuildContext& context)
+    ImageryPyramid(const ColourSource& source, const PyramidExtent& extent, const GridRect& photo,
+                   PyramidBlocks& blocks, BuildContext& context)
         : source_(source),
           extent_(extent),
           photo_(photo),
-          spill_(spill),
+          blocks_(blocks),
           context_(context),
           readers_(static_cast<size_t>(context.jobs)) {}
 
@@ -96,20 +96,23 @@ class ImageryPyramid {
                 above_ =
                     std::make_unique<LevelStore>(context_.workDirectory / ("imagery-" + std::to_string(stage.top())),
                                                  extent_.tilesAt(stage.top()), 4, 0.0f);
-            runStage(context_, "imagery", extent_, stage,
-                     [&](const TileId& top, int worker) { buildBlock(stage, top, worker); });
+            blocks_.runStage(stage,
+                             {.build = [&](BlockRecord& record, int worker) { buildBlock(stage, record, worker); },
+                              .take = [&](const BlockRecord& record) { take(record); },
+                              .level = above_ ? &above_->file() : nullptr});
+            if (below_) below_->file().discard();
             std::swap(below_, above_);
         }
-        if (tiles_ == 0)
+        if (blocks_.tiles() == 0)
             throw Error(ExitCode::georeference,
                         "the imagery has no texel over the heights: they overlap in extent at most, and all texels "
                         "there are nodata");
-        return tiles_;
+        return blocks_.tiles();
     }
 
   private:
-    void buildBlock(const BlockStage& stage, const TileId& top, int worker) {
-        Block block{.stage = stage, .top = top, .finest = {}, .levels = {}, .exists = {}};
+    void buildBlock(const BlockStage& stage, BlockRecord& record, int worker) {
+        Block block{.stage = stage, .record = record, .finest = {}, .levels = {}, .exists = {}};
         const bool hasPhoto = stage.first ? readSource(block, worker) : readBelow(block);
         if (!hasPhoto) return;
         halveUpwards(block);
@@ -212,8 +215,7 @@ class ImageryPyramid {
             if (tile.id.level == 0) addRootMips(block, above, core, tile);
             payload = encodeImageryTile(tile);
         }
-        storeTile(context_, spill_, tile.id, payload);
-        ++tiles_;
+        blocks_.store(block.record, tile.id, payload);
         return true;
     }
 
@@ -230,21 +232,26 @@ class ImageryPyramid {
 
     /// Gives the block's top level to the stage above.
     void handOver(const Block& block) {
-        if (!above_ || block.exists.back().at(0, 0) == 0) return;
+        block.record.topRecord.exists = block.exists.back().at(0, 0) != 0;
+        if (!above_ || !block.record.topRecord.exists) return;
         const StepTimer timer(context_.times, BuildStep::write);
         const GridRect core = coreInBlock(block.stage, block.stage.depth, kImageryGutter, 0, 0);
-        above_->write(block.top.x, block.top.y, block.levels.back().views().window(core).planes);
+        above_->write(block.record.top.x, block.record.top.y, block.levels.back().views().window(core).planes);
+    }
+
+    /// Adds a finished block to what the stage above may read.
+    void take(const BlockRecord& record) {
+        if (above_ && record.topRecord.exists) above_->take(record.top.x, record.top.y);
     }
 
     const ColourSource& source_;
     PyramidExtent extent_;
     GridRect photo_;  ///< finest texels that may hold photo
-    TileSpill& spill_;
+    PyramidBlocks& blocks_;
     BuildContext& context_;
     std::vector<std::unique_ptr<ColourReader>> readers_;  ///< one for each worker, opened at its first block
     std::unique_ptr<LevelStore> below_;                   ///< read by the running stage
     std::unique_ptr<LevelStore> above_;                   ///< written by it
-    std::atomic<uint64_t> tiles_ = 0;
 };
 
 /// Texels of the finest imagery level that the source may cover, one more on each side for what lies between texels.
@@ -263,9 +270,9 @@ PyramidExtent imageryExtent(const Tiling& tiling, GridSize samples, uint32_t ima
 }
 
 uint64_t buildImageryPyramid(const ColourSource& source, const Tiling& tiling, GridSize samples, uint32_t depth,
-                             TileSpill& spill, BuildContext& context) {
+                             PyramidBlocks& blocks, BuildContext& context) {
     const PyramidExtent extent = imageryExtent(tiling, samples, source.level());
-    return ImageryPyramid(source, extent, photoTexels(source, tiling, extent), spill, context).build(depth);
+    return ImageryPyramid(source, extent, photoTexels(source, tiling, extent), blocks, context).build(depth);
 }
 
 }  // namespace terray

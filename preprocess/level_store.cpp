@@ -20,7 +20,6 @@ void LevelStore::write(int64_t tileX, int64_t tileY, std::span<const GridView<co
         for (int64_t y = 0; y < kTileCore; ++y) cells.insert(cells.end(), view.row(y).begin(), view.row(y).end());
         file_.write(rowOffset(tileX, tileY, plane, 0), std::as_bytes(std::span(cells)));
     }
-    written_.at(tileX, tileY) = 1;
 }
 
 bool LevelStore::has(int64_t tileX, int64_t tileY) const {

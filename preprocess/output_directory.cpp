@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLockName = "lock";
 constexpr const char* kWorkName = "work";
+constexpr const char* kDatasetName = "dataset";
+constexpr const char* kJournalName = "journal";
 
 [[noreturn]] void fail(const std::string& message) {
     throw Error(ExitCode::output, message);
@@ -39,16 +41,20 @@ fs::path beside(const fs::path& out, const char* suffix) {
     return path;
 }
 
-/// What forbids deleting `directory` as an old dataset; empty when nothing does. An empty directory may go.
-std::string foreignContent(const fs::path& directory) {
+/// What `directory` holds beside the files of a dataset, if it has these; empty when nothing.
+std::string strangerIn(const fs::path& directory) {
     if (fs::is_symlink(directory) || !fs::is_directory(directory)) return "it is not a directory";
-    bool empty = true;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-        empty = false;
         const std::string name = entry.path().filename().string();
         if (name != kHeightsFile && name != kImageryFile) return "it also holds " + name;
     }
-    if (empty) return "";
+    return "";
+}
+
+/// What forbids deleting `directory` as an old dataset; empty when nothing does. An empty directory may go.
+std::string foreignContent(const fs::path& directory) {
+    const std::string stranger = strangerIn(directory);
+    if (!stranger.empty() || fs::is_empty(directory)) return stranger;
     std::array<char, 7> magic{};
     std::ifstream(directory / kHeightsFile, std::ios::binary).read(magic.data(), magic.size());
     if (std::string(magic.data(), magic.size()) != "PMTiles")
@@ -56,9 +62,21 @@ std::string foreignContent(const fs::path& directory) {
     return "";
 }
 
-void refuseExisting(const fs::path& out, bool replace) {
+bool isThere(const fs::path& path) {
     std::error_code ignored;
-    if (fs::symlink_status(out, ignored).type() == fs::file_type::not_found) return;
+    return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
+}
+
+/// Whether OUT has its name already, so that a resumed build has nothing left to do but to make sure that it is the
+/// same: the run that gave it that was killed at its last steps, or came to its end. Of an OUT that is to be replaced
+/// only the journal can tell: the dataset is made before it, so a journal without a dataset beside it says so.
+bool isPublishedAt(const fs::path& out, const fs::path& partial, const OutputPermissions& permissions) {
+    if (!permissions.resume || !isThere(out) || isThere(partial / kDatasetName)) return false;
+    return isThere(partial / kJournalName) || !permissions.replace;
+}
+
+void refuseExisting(const fs::path& out, bool replace) {
+    if (!isThere(out)) return;
     if (!replace) fail("output " + out.string() + " exists already; give another --out, or --force to replace it");
     const std::string reason = foreignContent(out);
     if (!reason.empty())
@@ -75,16 +93,17 @@ int lockDirectory(const fs::path& partial) {
     return -1;
 }
 
-/// Removes an OUT.partial that a killed run left.
-void removeAbandoned(const fs::path& partial) {
-    std::error_code ignored;
-    if (fs::symlink_status(partial, ignored).type() == fs::file_type::not_found) return;
-    if (!fs::is_directory(partial) || !fs::exists(partial / kLockName))
+/// Refuses an OUT.partial that is not what a run leaves.
+void requireOurs(const fs::path& partial) {
+    if (!isThere(partial)) return;
+    if (!fs::is_directory(partial) || (!fs::is_empty(partial) && !isThere(partial / kLockName)))
         fail(partial.string() + " is in the way and was not made by terray-preprocess; move it, or give another --out");
-    const int descriptor = lockDirectory(partial);
-    if (descriptor < 0) fail("another terray-preprocess is writing " + partial.string() + "; wait for it to end");
-    fs::remove_all(partial);
-    ::close(descriptor);
+}
+
+void makeDirectory(const fs::path& path) {
+    std::error_code error;
+    fs::create_directory(path, error);
+    if (error) fail("cannot make output directory " + path.string() + ": " + error.message());
 }
 
 void moveDirectory(const fs::path& from, const fs::path& to) {
@@ -101,62 +120,90 @@ void syncDirectory(const fs::path& directory) {
     ::close(descriptor);
 }
 
+/// Removes all but the lock, the journal last, which tells a later run how far this one got.
+void emptyPartial(const fs::path& partial) {
+    fs::remove_all(partial / kDatasetName);
+    fs::remove_all(partial / kWorkName);
+    fs::remove(partial / kJournalName);
+}
+
 }  // namespace
 
-void OutputDirectory::check(const fs::path& out, bool replace) {
+void OutputDirectory::check(const fs::path& out, const OutputPermissions& permissions) {
     const fs::path whole = normalised(out);
     if (!fs::is_directory(whole.parent_path()))
         fail("cannot make output " + whole.string() + ": " + whole.parent_path().string() + " is not a directory");
-    refuseExisting(whole, replace);
+    if (!isPublishedAt(whole, beside(whole, ".partial"), permissions)) refuseExisting(whole, permissions.replace);
 }
 
-OutputDirectory::OutputDirectory(const fs::path& out, bool replace)
-    : out_(normalised(out)), partial_(beside(out_, ".partial")), replace_(replace) {
-    check(out_, replace_);
-    removeAbandoned(partial_);
-    std::error_code error;
-    fs::create_directory(partial_, error);
-    if (error) fail("cannot make output directory " + partial_.string() + ": " + error.message());
+OutputDirectory::OutputDirectory(const fs::path& out, const OutputPermissions& permissions)
+    : out_(normalised(out)), partial_(beside(out_, ".partial")), permissions_(permissions) {
+    check(out_, permissions);
+    requireOurs(partial_);
+    const bool wasThere = isThere(partial_);
+    if (!wasThere) makeDirectory(partial_);
     try {
         lock_ = lockDirectory(partial_);
         if (lock_ < 0) fail("another terray-preprocess is writing " + partial_.string() + "; wait for it to end");
-        fs::create_directory(workDirectory(), error);
-        if (error) fail("cannot make " + workDirectory().string() + ": " + error.message());
+        kept_ = permissions.resume && isThere(journal());
+        published_ = isPublishedAt(out_, partial_, permissions);
+        if (published_) return;
+        if (!kept_) emptyPartial(partial_);
+        makeDirectory(directory());
+        makeDirectory(workDirectory());
+        syncDirectory(partial_);
     } catch (...) {
-        fs::remove_all(partial_, error);
+        std::error_code ignored;
+        if (!wasThere) fs::remove_all(partial_, ignored);
+        if (lock_ >= 0) ::close(lock_);
         throw;
     }
 }
 
 OutputDirectory::~OutputDirectory() {
     std::error_code ignored;
-    if (!partial_.empty()) fs::remove_all(partial_, ignored);
+    if (!partial_.empty() && !kept_) fs::remove_all(partial_, ignored);
     if (lock_ >= 0) ::close(lock_);
+}
+
+fs::path OutputDirectory::directory() const {
+    return partial_ / kDatasetName;
 }
 
 fs::path OutputDirectory::workDirectory() const {
     return partial_ / kWorkName;
 }
 
-void OutputDirectory::commit() {
-    fs::remove_all(workDirectory());
-    fs::remove(partial_ / kLockName);
-    syncDirectory(partial_);
+fs::path OutputDirectory::journal() const {
+    return partial_ / kJournalName;
+}
 
+void OutputDirectory::publish() {
+    syncDirectory(directory());
     // What is at OUT now may not be what was there when the run began.
-    refuseExisting(out_, replace_);
+    refuseExisting(out_, permissions_.replace);
     const fs::path old = beside(out_, ".replaced");
-    const bool replaces = fs::exists(out_);
+    const bool replaces = isThere(out_);
     if (replaces) moveDirectory(out_, old);
     try {
-        moveDirectory(partial_, out_);
+        moveDirectory(directory(), out_);
     } catch (const Error&) {
         if (replaces) moveDirectory(old, out_);
         throw;
     }
-    partial_.clear();
     syncDirectory(out_.parent_path());
-    if (replaces) fs::remove_all(old);
+    syncDirectory(partial_);
+    published_ = true;
+}
+
+void OutputDirectory::commit() {
+    if (!published_) publish();
+    // A run that was killed here may have left the old dataset, or half of it, to this one.
+    const fs::path old = beside(out_, ".replaced");
+    if (permissions_.replace && isThere(old) && strangerIn(old).empty()) fs::remove_all(old);
+    emptyPartial(partial_);
+    fs::remove_all(partial_);
+    partial_.clear();
 }
 
 }  // namespace terray

@@ -22,12 +22,17 @@ struct Stage {
     std::string name;
     uint64_t blocks = 0;
     uint64_t done = 0;
+    uint64_t doneBefore = 0;  ///< by an earlier run
     Clock::time_point start = Clock::now();
+
+    Stage() = default;
+    Stage(std::string stageName, uint64_t stageBlocks, uint64_t stageDone)
+        : name(std::move(stageName)), blocks(stageBlocks), done(stageDone), doneBefore(stageDone) {}
 
     /// Seconds that the rest of it will take if it goes on as so far; 0 before the first block.
     [[nodiscard]] double secondsLeft() const {
-        if (done == 0) return 0;
-        return secondsSince(start) / static_cast<double>(done) * static_cast<double>(blocks - done);
+        if (done == doneBefore) return 0;
+        return secondsSince(start) / static_cast<double>(done - doneBefore) * static_cast<double>(blocks - done);
     }
 };
 
@@ -35,7 +40,12 @@ struct Stage {
 class LineObserver final : public BuildObserver {
   public:
     void note(const std::string& text) override { std::fprintf(stderr, "note: %s\n", text.c_str()); }
-    void stageBegins(const std::string& name, uint64_t blocks) override { stage_ = {.name = name, .blocks = blocks}; }
+    void stageBegins(const std::string& name, uint64_t blocks, uint64_t done) override {
+        stage_ = Stage(name, blocks, done);
+        if (done > 0)
+            std::fprintf(stderr, "%s: %llu of %llu blocks were done before\n", name.c_str(),
+                         static_cast<unsigned long long>(done), static_cast<unsigned long long>(blocks));
+    }
     void blockDone(uint64_t tiles, uint64_t bytes) override {
         if (++stage_.done < stage_.blocks) return;
         std::fprintf(stderr, "%s: %llu blocks in %.1f s; %llu tiles, %s so far\n", stage_.name.c_str(),
@@ -54,9 +64,9 @@ class BarObserver final : public BuildObserver {
         std::fprintf(stderr, "\r\033[Knote: %s\n", text.c_str());
         if (stage_.blocks > 0) draw(0);
     }
-    void stageBegins(const std::string& name, uint64_t blocks) override {
+    void stageBegins(const std::string& name, uint64_t blocks, uint64_t done) override {
         if (stage_.blocks > 0) std::fputc('\n', stderr);
-        stage_ = {.name = name, .blocks = blocks};
+        stage_ = Stage(name, blocks, done);
         draw(0);
     }
     void blockDone(uint64_t tiles, uint64_t) override {
@@ -92,9 +102,9 @@ class BarObserver final : public BuildObserver {
 class JsonObserver final : public BuildObserver {
   public:
     void note(const std::string& text) override { print(Json::Object{{"event", "note"}, {"text", text}}); }
-    void stageBegins(const std::string& name, uint64_t blocks) override {
-        stage_ = {.name = name, .blocks = blocks};
-        print(Json::Object{{"event", "stage"}, {"stage", name}, {"blocks", blocks}});
+    void stageBegins(const std::string& name, uint64_t blocks, uint64_t done) override {
+        stage_ = Stage(name, blocks, done);
+        print(Json::Object{{"event", "stage"}, {"stage", name}, {"blocks", blocks}, {"doneBefore", done}});
     }
     void blockDone(uint64_t tiles, uint64_t bytes) override {
         ++stage_.done;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "common/error.h"
@@ -23,13 +24,12 @@ namespace {
 }  // namespace
 
 WorkFile::WorkFile(std::filesystem::path path)
-    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) fail("create", path_);
 }
 
 WorkFile::~WorkFile() {
     ::close(descriptor_);
-    ::unlink(path_.c_str());
 }
 
 void WorkFile::write(uint64_t offset, ByteView bytes) {
@@ -51,6 +51,24 @@ void WorkFile::read(uint64_t offset, std::span<std::byte> bytes) const {
         bytes = bytes.subspan(static_cast<size_t>(got));
         offset += static_cast<uint64_t>(got);
     }
+}
+
+void WorkFile::sync() {
+    if (::fdatasync(descriptor_) != 0) fail("write", path_);
+}
+
+uint64_t WorkFile::size() const {
+    struct stat status = {};
+    if (::fstat(descriptor_, &status) != 0) fail("read", path_);
+    return static_cast<uint64_t>(status.st_size);
+}
+
+void WorkFile::truncate(uint64_t bytes) {
+    if (::ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) fail("write", path_);
+}
+
+void WorkFile::discard() {
+    if (::unlink(path_.c_str()) != 0 && errno != ENOENT) fail("remove", path_);
 }
 
 }  // namespace terray

@@ -28,7 +28,7 @@ void makeDataset(const std::filesystem::path& path, const std::string& mark) {
 
 std::string refusal(const std::filesystem::path& out, bool replace) {
     try {
-        const OutputDirectory output(out, replace);
+        const OutputDirectory output(out, {.replace = replace});
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::output) << error.what();
         return error.what();
@@ -41,7 +41,7 @@ using Names = std::vector<std::string>;
 TEST(OutputDirectory, AppearsWholeOrNotAtAll) {
     const TemporaryDirectory parent;
     {
-        OutputDirectory output(parent / "out/", false);  // a trailing slash is no other name
+        OutputDirectory output(parent / "out/", {.replace = false});  // a trailing slash is no other name
         writeText(output.directory() / kHeightsFile, "PMTiles");
         writeText(output.workDirectory() / "temporary", "x");
         EXPECT_EQ(parent.names(), Names{"out.partial"});
@@ -51,7 +51,7 @@ TEST(OutputDirectory, AppearsWholeOrNotAtAll) {
     EXPECT_EQ(parent.names(), Names{"out"});
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(parent / "out"), {}), 1);
     {
-        const OutputDirectory output(parent / "other", false);
+        const OutputDirectory output(parent / "other", {.replace = false});
         writeText(output.directory() / kHeightsFile, "PMTiles");
     }
     EXPECT_EQ(parent.names(), Names{"out"});
@@ -62,7 +62,7 @@ TEST(OutputDirectory, ReplacesADatasetOnlyWhenAskedTo) {
     makeDataset(parent / "out", "old");
     EXPECT_NE(refusal(parent / "out", false).find("--force"), std::string::npos);
     {
-        OutputDirectory output(parent / "out", true);
+        OutputDirectory output(parent / "out", {.replace = true});
         writeText(output.directory() / kHeightsFile, "PMTilesnew");
         EXPECT_EQ(readText(parent / "out" / kHeightsFile), "PMTilesold");
         output.commit();
@@ -74,7 +74,7 @@ TEST(OutputDirectory, ReplacesADatasetOnlyWhenAskedTo) {
 TEST(OutputDirectory, KeepsTheOldDatasetWhenTheNewOneFails) {
     const TemporaryDirectory parent;
     makeDataset(parent / "out", "old");
-    { const OutputDirectory output(parent / "out", true); }
+    { const OutputDirectory output(parent / "out", {.replace = true}); }
     EXPECT_EQ(readText(parent / "out" / kHeightsFile), "PMTilesold");
     EXPECT_EQ(parent.names(), Names{"out"});
 }
@@ -101,7 +101,7 @@ TEST(OutputDirectory, AnEmptyDirectoryMayBeReplaced) {
     const TemporaryDirectory parent;
     std::filesystem::create_directory(parent / "out");
     EXPECT_NE(refusal(parent / "out", false), "");
-    OutputDirectory output(parent / "out", true);
+    OutputDirectory output(parent / "out", {.replace = true});
     writeText(output.directory() / kHeightsFile, "PMTiles");
     output.commit();
     EXPECT_EQ(parent.names(), Names{"out"});
@@ -116,7 +116,7 @@ TEST(OutputDirectory, RefusesAParentThatIsNoDirectory) {
 
 TEST(OutputDirectory, TwoRunsDoNotShareOne) {
     const TemporaryDirectory parent;
-    const OutputDirectory first(parent / "out", false);
+    const OutputDirectory first(parent / "out", {.replace = false});
     EXPECT_NE(refusal(parent / "out", false).find("another terray-preprocess"), std::string::npos);
     EXPECT_TRUE(std::filesystem::exists(first.workDirectory()));
 }
@@ -127,7 +127,7 @@ TEST(OutputDirectory, ClearsAwayWhatAKilledRunLeft) {
     writeText(parent / "out.partial" / "lock", "");
     writeText(parent / "out.partial" / "work" / "height-tiles", "x");
     {
-        OutputDirectory output(parent / "out", false);
+        OutputDirectory output(parent / "out", {.replace = false});
         EXPECT_TRUE(std::filesystem::is_empty(output.workDirectory()));
         writeText(output.directory() / kHeightsFile, "PMTiles");
         output.commit();
@@ -135,6 +135,7 @@ TEST(OutputDirectory, ClearsAwayWhatAKilledRunLeft) {
     EXPECT_EQ(parent.names(), Names{"out"});
     // But a directory of that name that no run made is somebody's.
     std::filesystem::create_directory(parent / "b.partial");
+    writeText(parent / "b.partial" / "notes.txt", "x");
     EXPECT_NE(refusal(parent / "b", false).find("in the way"), std::string::npos);
 }
 

@@ -145,28 +145,65 @@ TEST_F(Program, RefusesOutputThatCannotBeWritten) {
     EXPECT_EQ(directory_.names(), Names{"file"});
 }
 
-TEST_F(Program, AFileThatMayNotGrowLeavesNothingBehind) {
-    // Each limit strikes elsewhere: the stored level, the spilled tiles, the archive.
-    for (const uint64_t limit : {uint64_t{0}, uint64_t{4096}, uint64_t{100000}, uint64_t{2} << 20}) {
-        const ProgramResult result = execute({.program = TERRAY_PREPROCESS_PROGRAM,
-                                              .arguments = {"synth", "--size", "4100", "--out", path("out"), "--quiet"},
-                                              .maxFileBytes = limit});
-        // With no byte allowed not even the message can be written to the file that stands in for stderr.
-        if (limit == 0)
-            EXPECT_EQ(result.exitCode, static_cast<int>(ExitCode::output));
-        else
-            expectRefusal(result, ExitCode::output, "File too large");
-        EXPECT_TRUE(directory_.names().empty()) << limit;
+TEST_F(Program, AFullDiskIsNamedAndTheBuildGoesOnOnceThereIsSpace) {
+    // Each limit strikes elsewhere: the journal, the tiles, the level between two stages; the archive's last byte.
+    for (const std::string size : {"2100", "600"}) {
+        EXPECT_EQ(run({"synth", "--size", size, "--seed", "3", "--out", path("whole")}).exitCode, 0);
+        const Bytes whole = readFile(directory_ / "whole" / kHeightsFile);
+        const std::vector<std::string> arguments = {"synth", "--size",  size,      "--seed",  "3",
+                                                    "--out", path("o"), "--quiet", "--resume"};
+        for (const uint64_t limit : {uint64_t{0}, uint64_t{4096}, uint64_t{100000}, uint64_t{whole.size() - 1}}) {
+            const ProgramResult result =
+                execute({.program = TERRAY_PREPROCESS_PROGRAM, .arguments = arguments, .maxFileBytes = limit});
+            // With no byte allowed not even the message can be written to the file that stands in for stderr.
+            if (limit == 0)
+                EXPECT_EQ(result.exitCode, static_cast<int>(ExitCode::output));
+            else
+                expectRefusal(result, ExitCode::output, "File too large");
+            EXPECT_FALSE(std::filesystem::exists(directory_ / "o")) << limit;
+        }
+        // Of the larger one not even the first block's part of the level above fits under the last limit.
+        EXPECT_TRUE(size == "2100" || std::filesystem::exists(directory_ / "o.partial"));
+        const ProgramResult resumed = run(arguments);
+        EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+        EXPECT_EQ(readFile(directory_ / "o" / kHeightsFile), whole);
+        std::filesystem::remove_all(directory_ / "o");
+        std::filesystem::remove_all(directory_ / "whole");
     }
 }
 
-TEST_F(Program, AnInterruptLeavesNothingBehind) {
-    const std::filesystem::path tiles = directory_ / "out.partial" / "work" / "height-tiles";
+TEST_F(Program, AnInterruptBeforeTheFirstBlockLeavesNothingBehind) {
+    const std::filesystem::path tiles = directory_ / "out.partial" / "work" / "heights-tiles";
     const ProgramResult result = execute({.program = TERRAY_PREPROCESS_PROGRAM,
                                           .arguments = {"synth", "--size", "60000", "--out", path("out"), "--quiet"},
                                           .interruptWhen = [&] { return std::filesystem::exists(tiles); }});
     expectRefusal(result, ExitCode::interrupted, "interrupted");
     EXPECT_TRUE(directory_.names().empty());
+}
+
+TEST_F(Program, AnInterruptedBuildIsResumed) {
+    const std::filesystem::path journal = directory_ / "out.partial" / "journal";
+    const std::vector<std::string> arguments = {"synth", "--size",    "2600",   "--memory", "256M",
+                                                "--out", path("out"), "--jobs", "1"};
+    const ProgramResult stopped =
+        execute({.program = TERRAY_PREPROCESS_PROGRAM, .arguments = arguments, .interruptWhen = [&] {
+                     std::error_code ignored;
+                     const auto bytes = std::filesystem::file_size(journal, ignored);
+                     return !ignored && bytes > 1800;  // the heading and a block or two
+                 }});
+    EXPECT_EQ(stopped.exitCode, static_cast<int>(ExitCode::interrupted)) << stopped.err;
+    EXPECT_NE(stopped.err.find("interrupted (what is done is kept in"), std::string::npos) << stopped.err;
+    EXPECT_EQ(directory_.names(), Names{"out.partial"});
+
+    auto changed = arguments;
+    changed.insert(changed.end(), {"--seed", "8", "--resume"});
+    expectRefusal(run(changed), ExitCode::usage, "options was");
+    auto same = arguments;
+    same.emplace_back("--resume");
+    const ProgramResult resumed = run(same);
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_NE(resumed.err.find("blocks were done before"), std::string::npos) << resumed.err;
+    EXPECT_EQ(run({"verify", path("out")}).exitCode, 0);
 }
 
 TEST_F(Program, RefusesWhatIsNoDataset) {

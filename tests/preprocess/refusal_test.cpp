@@ -1,4 +1,4 @@
-// Builds that cannot be finished end with the right kind of error and leave nothing behind.
+// Builds that cannot be finished end with the right kind of error, and leave nothing behind but what is worth keeping.
 
 #include <cmath>
 #include <limits>
@@ -11,20 +11,27 @@
 namespace terray {
 namespace {
 
-/// Builds into a directory of its own; expects an error, and an empty directory after it.
-Error refusal(const HeightSource& heights, const std::atomic<bool>* stop = nullptr, int jobs = 2) {
+/// How a build that is to fail is run.
+struct Attempt {
+    const std::atomic<bool>* stop = nullptr;
+    int jobs = 2;
+};
+
+/// Builds into a directory of its own; expects an error, and after it nothing, or what another run can go on with.
+Error refusal(const HeightSource& heights, const Attempt& attempt = {}) {
     const TemporaryDirectory directory;
     BuildRequest request;
     request.out = directory / "out";
-    request.jobs = jobs;
-    request.stop = stop;
+    request.jobs = attempt.jobs;
+    request.stop = attempt.stop;
     Error found(ExitCode::ok, "the build went well");
     try {
         (void)buildDataset(heights, {}, request);
     } catch (const Error& error) {
         found = error;
     }
-    EXPECT_TRUE(directory.names().empty()) << directory.names().front();
+    const bool isKept = std::string(found.what()).find("--resume") != std::string::npos;
+    EXPECT_EQ(directory.names(), isKept ? std::vector<std::string>{"out.partial"} : std::vector<std::string>{});
     return found;
 }
 
@@ -61,7 +68,7 @@ TEST(Refusal, ASourceThatCannotBeReadToItsEnd) {
         };
         const Error error = refusal(source);
         EXPECT_EQ(error.code(), ExitCode::input);
-        EXPECT_STREQ(error.what(), "cannot read a.tif: it is cut short");
+        EXPECT_EQ(std::string(error.what()).find("cannot read a.tif: it is cut short"), 0u);
     }
 }
 
@@ -73,7 +80,7 @@ TEST(Refusal, AnInterruptedBuild) {
         source.onRead_ = [&] {
             if (++reads == 2) stop = true;
         };
-        EXPECT_EQ(refusal(source, &stop, jobs).code(), ExitCode::interrupted);
+        EXPECT_EQ(refusal(source, {.stop = &stop, .jobs = jobs}).code(), ExitCode::interrupted);
         EXPECT_LE(reads, 3);
     }
 }

@@ -13,18 +13,20 @@
 namespace terray {
 namespace {
 
-TEST(WorkFile, GoesWithItsObject) {
+TEST(WorkFile, StaysForAnotherRunUntilItIsDiscarded) {
     const TemporaryDirectory directory;
-    {
-        WorkFile file(directory / "a");
-        EXPECT_EQ(directory.names(), std::vector<std::string>{"a"});
-        const Bytes bytes = {std::byte{1}, std::byte{2}, std::byte{3}};
-        file.write(1000, bytes);
-        Bytes back(3);
-        file.read(1000, back);
-        EXPECT_EQ(back, bytes);
-        EXPECT_THROW(file.read(1001, back), Error);
-    }
+    const Bytes bytes = {std::byte{1}, std::byte{2}, std::byte{3}};
+    WorkFile(directory / "a").write(1000, bytes);
+    WorkFile file(directory / "a");
+    EXPECT_EQ(file.size(), 1003u);
+    Bytes back(3);
+    file.read(1000, back);
+    EXPECT_EQ(back, bytes);
+    EXPECT_THROW(file.read(1001, back), Error);
+    file.truncate(1001);
+    EXPECT_THROW(file.read(1000, back), Error);
+    EXPECT_EQ(directory.names(), std::vector<std::string>{"a"});
+    file.discard();
     EXPECT_TRUE(directory.names().empty());
 }
 
@@ -52,6 +54,8 @@ TEST(LevelStore, ReturnsWindowsAcrossTilesAndFillsTheRest) {
                     planes[static_cast<size_t>(plane)].at(x, y) =
                         value(tileX * kTileCore + x, tileY * kTileCore + y, plane);
         store.write(tileX, tileY, std::array<GridView<const float>, 2>{planes[0].view(), planes[1].view()});
+        EXPECT_FALSE(store.has(tileX, tileY));
+        store.take(tileX, tileY);
     }
     const auto stored = [](int64_t x, int64_t y) {
         if (x < 0 || y < 0) return false;
