@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <unordered_set>
+#include <utility>
 
 #include "common/check.h"
 
@@ -36,12 +37,34 @@ TileTree::TileTree(const Tiling& tiling, uint32_t finestHeightLevel, std::option
 void TileTree::learn(const HeightTile& tile) {
     TERRAY_CHECK_OP(tile.id.level, <=, finestHeightLevel_);
     Heights& own = heights_[tile.id];
-    own.record = tile.record;
-    own.metresPerCode = tile.encoding.metresPerCode();
+    describe(tile.id, own, {tile.record, tile.encoding.metresPerCode()});
     own.childrenKnown = true;
     if (tile.id.level == finestHeightLevel_) return;
-    for (uint32_t quadrant = 0; quadrant < 4; ++quadrant)
-        heights_.try_emplace(tile.id.child(quadrant), Heights{.record = tile.children[quadrant]});
+    for (uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+        const TileId child = tile.id.child(quadrant);
+        const auto [place, isNew] = heights_.try_emplace(child);
+        if (isNew) describe(child, place->second, {tile.children[quadrant]});
+    }
+}
+
+void TileTree::describe(const TileId& id, Heights& tile, const Stored& stored) {
+    tile.record = stored.record;
+    tile.metresPerCode = stored.metresPerCode;
+    if (!edits_) return;
+    const auto edited = edits_->record(id, stored.record, stored.metresPerCode);
+    if (!edited) return;
+    tile.record = *edited;
+    if (stored.metresPerCode > 0) tile.metresPerCode = edits_->stepOf(*edited, stored.metresPerCode);
+    stored_.insert_or_assign(id, stored);
+}
+
+void TileTree::setEdits(std::shared_ptr<const EditedGround> edits) {
+    edits_ = std::move(edits);
+    const auto before = std::exchange(stored_, {});
+    for (auto& [id, tile] : heights_) {
+        const auto edited = before.find(id);
+        describe(id, tile, edited != before.end() ? edited->second : Stored{tile.record, tile.metresPerCode});
+    }
 }
 
 void TileTree::learn(const ImageryTile& tile) {
@@ -71,6 +94,7 @@ void TileTree::forgetBeyond(size_t most) {
     if (knownTiles() <= std::max(most, 2 * keptLast_)) return;
     keepAroundResident(heights_);
     keepAroundResident(imagery_);
+    std::erase_if(stored_, [this](const auto& entry) { return !heights_.contains(entry.first); });
     keptLast_ = knownTiles();
 }
 

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 
+#include "common/edited_ground.h"
 #include "common/height_tile.h"
 #include "common/imagery_tile.h"
 #include "common/tiling.h"
@@ -17,6 +19,9 @@ namespace terray {
 /// Knowledge of a tile (its record) is separate from residency (its samples are where the renderer can draw them).
 /// Residency is marked from outside. Knowledge of where the camera no longer is can be forgotten, so that a long flight
 /// takes bounded memory. One thread.
+///
+/// Under edits the tree knows the edited ground: records are edited as they come in (EditedGround::record), so that
+/// boxes, errors and what is refined follow from it.
 class TileTree {
   public:
     struct Heights {
@@ -38,6 +43,10 @@ class TileTree {
     [[nodiscard]] uint32_t finestHeightLevel() const { return finestHeightLevel_; }
     [[nodiscard]] std::optional<uint32_t> finestImageryLevel() const { return finestImageryLevel_; }
 
+    /// From now on the ground is edited so, in place of what it was before; null: as it is stored. What is known is
+    /// kept. Costs time in proportion to what is known, times the edits.
+    void setEdits(std::shared_ptr<const EditedGround> edits);
+
     /// Takes over what a tile says of itself and its children.
     void learn(const HeightTile& tile);
     void learn(const ImageryTile& tile);
@@ -57,12 +66,22 @@ class TileTree {
     [[nodiscard]] size_t knownTiles() const { return heights_.size() + imagery_.size(); }
 
   private:
+    /// A tile's own part of what is known, as it is stored.
+    struct Stored {
+        HeightRecord record;
+        double metresPerCode = 0;
+    };
+    /// Sets a tile's record and step from the stored ones, and keeps these where they are edited.
+    void describe(const TileId& id, Heights& tile, const Stored& stored);
+
     Tiling tiling_;
     uint32_t finestHeightLevel_;
     std::optional<uint32_t> finestImageryLevel_;
     std::unordered_map<TileId, Heights> heights_;
     std::unordered_map<TileId, Imagery> imagery_;
-    size_t keptLast_ = 0;  ///< known tiles after the last forgetting
+    std::shared_ptr<const EditedGround> edits_;
+    std::unordered_map<TileId, Stored> stored_;  ///< of those in heights_ that edits change
+    size_t keptLast_ = 0;                        ///< known tiles after the last forgetting
 };
 
 }  // namespace terray
