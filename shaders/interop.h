@@ -1,5 +1,5 @@
 // Data that C++ writes and shaders read: one file, compiled by both. Every struct is std430/std140-clean: vec4 and
-// uvec4 only.
+// uvec4 only, or dvec4 only.
 #ifndef TERRAY_INTEROP_H
 #define TERRAY_INTEROP_H
 
@@ -10,6 +10,7 @@
 namespace terray::interop {
 using vec4 = glm::vec4;
 using uvec4 = glm::uvec4;
+using dvec4 = glm::dvec4;
 #endif
 
 // Bindings. Textures: GL texture units. Buffers: indexed binding points.
@@ -55,6 +56,15 @@ using uvec4 = glm::uvec4;
 // Heights for which light on the ground is known: evenly from sea level to the top one, metres.
 #define TERRAY_SKY_LIGHTS 32
 #define TERRAY_SKY_TOP_LIGHT 9000.0
+
+// Within the program that edits tiles (TileEditor).
+#define TERRAY_IMAGE_EDITED_CODES 0   // uimage2DArray r16ui: level 0 of the height array
+#define TERRAY_BUFFER_EDITED_TILE 0   // UBO: EditedTileParameters
+#define TERRAY_BUFFER_EDITS 0         // SSBO: EditParameters[]
+#define TERRAY_BUFFER_EDIT_SEGMENTS 1 // SSBO: dvec4[], of each segment of a line its two ends
+#define TERRAY_EDIT_CRATER 0
+#define TERRAY_EDIT_RAISE 1
+#define TERRAY_EDIT_LEVEL 2
 
 // A slot that is none: NodeParameters::source.y of a node without photo.
 #define TERRAY_NO_SLOT 0xffffffffu
@@ -116,7 +126,25 @@ struct ShadowParameters {
     vec4 sun;    // x: tangent of half the sun's angular diameter; y: rays for each pixel
 };
 
+// In double, so that a sample's height depends on its place in the dataset and not on the tile that holds it.
+#if defined(__cplusplus) || defined(TERRAY_EDITS)
+// One edit, see common/terrain_edit.h.
+struct EditParameters {
+    dvec4 shape;  // x: radius, y: full, z: height, w: rim; metres
+    dvec4 line;   // x: TERRAY_EDIT_..., y: its first segment, z: one past its last, w: its reach, metres
+};
+
+// The tile that is edited.
+struct EditedTileParameters {
+    dvec4 samples;  // xy: column and row of texel (0, 0) in the grid of its level, z: metres between samples, w: slot
+    dvec4 ground;   // xy: the root square's west and north, metres; z: number of edits
+    dvec4 codes;    // xy: offset and metres per code as stored; zw: as edited
+};
+#endif
+
 #ifdef __cplusplus
+static_assert(sizeof(EditParameters) == 2 * 32);
+static_assert(sizeof(EditedTileParameters) == 3 * 32);
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);

@@ -1,3 +1,5 @@
+#include "common/error.h"
+
 #include <cstdio>
 #include <memory>
 #include <span>
@@ -88,7 +90,9 @@ ExitCode runError(const std::vector<std::string>& arguments) {
     const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
     const Flight flight = loadFlight(options.flight);
     EngineOptions base = options.engine.options(source->metadata().imageryLevel.has_value());
-    base.overlay = options.engine.overlay(*source);
+    options.engine.place(*source, base);
+    if (!base.edits.empty())
+        throw Error(ExitCode::usage, "--edits: errors are measured against the dataset's own ground; leave it out");
     const std::vector<ErrorSetting> settings = settingsOf(options.sweep, base);
 
     RunDirectory directory(options.out, false, options.force);

@@ -70,6 +70,7 @@ void addTiles(std::vector<Column>& columns) {
     add("imagery_resident", [](const auto& f) { return count(f.report.residentImagery); });
     addPaged("requested", &PagerStatistics::requested);
     add("uploaded", [](const auto& f) { return count(f.report.uploadedTiles); });
+    add("edited", [](const auto& f) { return count(f.report.editedTiles); });
     addPaged("read_bytes", &PagerStatistics::bytesRead);
     add("uploaded_bytes", [](const auto& f) { return count(f.report.uploadedBytes); });
     add("host_bytes", [](const auto& f) { return count(f.report.pager.hostBytes); });

@@ -64,7 +64,7 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
 
 EngineOptions engineOptions(const ReplayOptions& options, const TileSource& source) {
     EngineOptions engine = options.engine.options(source.metadata().imageryLevel.has_value());
-    engine.overlay = options.engine.overlay(source);
+    options.engine.place(source, engine);
     engine.features.statistics = !options.noStatistics;
     return engine;
 }

@@ -77,6 +77,9 @@ struct Engine::State {
     /// Pages until the selection lacks nothing that can be had.
     void waitForTiles();
     void waitForArrivals(const std::vector<TileRequest>& requests);
+    /// Takes over edits that were set since the last frame. @return whether there were any
+    bool takeEdits();
+    void note(const Uploads& uploads);
     void render();
     void fillReport();
 
@@ -91,6 +94,7 @@ struct Engine::State {
     View view;
     Selection selection;
     FrameReport report;
+    std::optional<EditList> newEdits;
     Pager pager;  // last: its threads end first
 };
 
@@ -130,10 +134,20 @@ std::vector<TileRequest> Engine::State::notPending(const std::vector<TileRequest
 
 std::vector<TileKey> Engine::State::upload(const std::vector<TileRequest>& order, uint64_t budgetBytes) {
     std::vector<TileKey> uploaded;
-    const Uploads done = resident.upload(order, budgetBytes, &uploaded);
-    report.uploadedTiles += done.tiles;
-    report.uploadedBytes += done.bytes;
+    note(resident.upload(order, budgetBytes, &uploaded, &timer));
     return uploaded;
+}
+
+void Engine::State::note(const Uploads& uploads) {
+    report.uploadedTiles += uploads.tiles;
+    report.editedTiles += uploads.editedTiles;
+    report.uploadedBytes += uploads.bytes;
+}
+
+bool Engine::State::takeEdits() {
+    if (!newEdits) return false;
+    note(resident.setEdits(*std::exchange(newEdits, std::nullopt), &timer));
+    return true;
 }
 
 void Engine::State::stream() {
@@ -192,7 +206,7 @@ void Engine::State::fillReport() {
     report.residentImagery = resident.gpu().residentImagery();
     report.gpuTiles = resident.gpu().allocatedBytes();
     report.gpuTargets = targets.bytes();
-    report.gpuBuffers = renderer.bufferBytes();
+    report.gpuBuffers = renderer.bufferBytes() + resident.gpu().editBufferBytes();
     report.pager = pager.statistics();
 }
 
@@ -202,6 +216,7 @@ Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const Eng
     setExaggeration(options.exaggeration);
     state_->renderer.setOverlay(options.overlay);
     state_->options.overlay.clear();  // it is on the GPU
+    if (!options.edits.empty()) setEdits(std::exchange(state_->options.edits, {}));
 }
 
 Engine::~Engine() = default;
@@ -216,10 +231,12 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     state.view = exaggerated(view, state.options.exaggeration);
     state.timer.enter(GpuPass::upload);
     state.resident.forgetBeyond(kMaxKnownTiles);
+    const bool edited = state.takeEdits();
     if (waitForTiles) {
         state.waitForTiles();
     } else {
         state.stream();
+        if (edited) state.stream();  // what has left the GPU comes back from main memory at once
     }
     state.render();
     state.report.cpuMs = millisecondsSince(start) - state.report.waitMs;
@@ -233,6 +250,17 @@ void Engine::setExaggeration(double factor) {
     TERRAY_CHECK_OP(factor, >=, kLeastExaggeration);
     TERRAY_CHECK_OP(factor, <=, kGreatestExaggeration);
     state_->options.exaggeration = factor;
+}
+
+void Engine::setEdits(EditList edits) {
+    TERRAY_CHECK(valid(edits));
+    state_->newEdits = std::move(edits);
+}
+
+void Engine::addEdit(TerrainEdit edit) {
+    EditList edits = state_->newEdits ? *state_->newEdits : state_->resident.edits();
+    edits.push_back(std::move(edit));
+    setEdits(std::move(edits));
 }
 
 const FrameTargets& Engine::targets() const {

@@ -17,6 +17,7 @@
 #include "client/stream/pager.h"
 #include "client/stream/selection.h"
 #include "common/overlay_mesh.h"
+#include "common/terrain_edit.h"
 #include "common/utc_time.h"
 
 namespace terray {
@@ -37,6 +38,7 @@ struct EngineOptions {
     /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.
     std::optional<UtcTime> sunTime;
     std::vector<OverlayMesh> overlay;  ///< drawn into every picture
+    EditList edits;                    ///< of the ground; valid()
 };
 
 /// What a frame did. Times in milliseconds, sizes in bytes.
@@ -51,6 +53,7 @@ struct FrameReport {
     size_t standIns = 0;  ///< nodes drawn from an ancestor of what was wanted
     size_t wanted = 0;    ///< tiles that the frame still lacked, failed ones among them
     size_t uploadedTiles = 0;
+    size_t editedTiles = 0;  ///< of the uploaded ones, those that edits change
     uint64_t uploadedBytes = 0;
     size_t residentHeights = 0;
     size_t residentImagery = 0;
@@ -84,6 +87,14 @@ class Engine {
     /// From the next frame on heights, the camera's among them, are drawn multiplied by this. No tile is loaded anew;
     /// selection refines for the larger errors.
     void setExaggeration(double factor);
+
+    /// From the next frame on the ground is edited so, in place of the edits before; the dataset is not touched. Tiles
+    /// that the change concerns are made anew from their stored codes, in that frame where main memory holds them;
+    /// until they come, ancestors stand in. Without waiting or starting anew, the pictures are those of an engine that
+    /// began with this list. @param edits  valid()
+    void setEdits(EditList edits);
+    /// The same list with one more at its end.
+    void addEdit(TerrainEdit edit);
 
     [[nodiscard]] const FrameTargets& targets() const;
     /// The nodes of the last frame; node index plus 1 is what targets().readNodes() holds.

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "client/engine/dataset_camera.h"
+#include "client/stream/edits_file.h"
 #include "common/error.h"
 #include "common/parse_number.h"
 #include "common/sun_position.h"
@@ -133,6 +135,7 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--sun-diameter", sunDiameter_, "DEGREES",
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
     line.option("--shadow-rays", shadowRays_, "N", "of each pixel when the sun has a diameter, 1 to 64 (8)");
+    line.option("--edits", edits_, "FILE.json", "craters and brush strokes on the ground; the dataset stays as it is");
     overlay_.declare(line);
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
@@ -207,9 +210,18 @@ Json EngineCommandLine::toJson() const {
                         {"shadows", shadows_},
                         {"sun-diameter", sunDiameter_},
                         {"shadow-rays", shadowRays_},
+                        {"edits", edits_.empty() ? Json() : Json(edits_)},
                         {"overlay", overlay_.toJson()},
                         {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};
+}
+
+void EngineCommandLine::place(const TileSource& source, EngineOptions& options) const {
+    if (!edits_.empty()) {
+        const std::optional<Projection> projection = projectionOf(source.metadata());
+        options.edits = loadEdits(edits_, projection ? &*projection : nullptr);
+    }
+    options.overlay = overlay_.meshes(source, options.edits);
 }
 
 ShaderLibrary EngineCommandLine::shaders() const {

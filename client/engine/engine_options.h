@@ -24,8 +24,9 @@ class EngineCommandLine {
     /// the option that is out of range.
     [[nodiscard]] EngineOptions options(bool datasetHasImagery) const;
 
-    /// What is put into the pictures of a dataset, see OverlayCommandLine::meshes.
-    [[nodiscard]] std::vector<OverlayMesh> overlay(const TileSource& source) const { return overlay_.meshes(source); }
+    /// What is given as a file or in places of a dataset, put into the options of its engine: edits (loadEdits), and
+    /// what stands on the edited ground (OverlayCommandLine::meshes). Throws as these do.
+    void place(const TileSource& source, EngineOptions& options) const;
 
     /// Every option by name without its dashes, as it is in force, for manifests.
     [[nodiscard]] Json toJson() const;
@@ -35,6 +36,7 @@ class EngineCommandLine {
 
   private:
     OverlayCommandLine overlay_;
+    std::string edits_;
     double tolerance_ = SelectionOptions().tolerance.value();
     double imageryTolerance_ = SelectionOptions().imageryTolerance.value();
     bool noImagery_ = false;

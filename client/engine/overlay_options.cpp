@@ -46,7 +46,8 @@ std::vector<double> parseNumbers(const std::string& option, const std::string& t
 /// From places as people give them to the dataset's world.
 class Places {
   public:
-    explicit Places(const TileSource& source) : projection_(projectionOf(source.metadata())), ground_(source) {}
+    Places(const TileSource& source, const EditList& edits)
+        : projection_(projectionOf(source.metadata())), ground_(source, edits) {}
 
     [[nodiscard]] bool hasCoordinateSystem() const { return projection_.has_value(); }
 
@@ -117,12 +118,12 @@ void OverlayCommandLine::declare(CommandLine& line) {
     line.list("--cube", cubes_, "LON,LAT,HEIGHT,SIDE", "draw cubes, HEIGHT of the lowest face, in metres");
 }
 
-std::vector<OverlayMesh> OverlayCommandLine::meshes(const TileSource& source) const {
+std::vector<OverlayMesh> OverlayCommandLine::meshes(const TileSource& source, const EditList& edits) const {
     if (!(trackRadius_ >= 0.01 && trackRadius_ <= 10000))
         throw Error(ExitCode::usage, "--track-radius: found \"" + Json(trackRadius_).dump() +
                                          "\", expected a number from 0.01 to 10000");
     if (tracks_.empty() && markers_.empty() && cubes_.empty()) return {};
-    Places places(source);
+    Places places(source, edits);
     std::vector<OverlayMesh> result;
     for (size_t i = 0; i < tracks_.size(); ++i)
         result.push_back(trackMesh(tracks_[i], places, trackRadius_, kTrackColours[i % kTrackColours.size()]));

@@ -7,6 +7,7 @@
 #include "common/command_line.h"
 #include "common/json.h"
 #include "common/overlay_mesh.h"
+#include "common/terrain_edit.h"
 
 namespace terray {
 
@@ -19,12 +20,12 @@ class OverlayCommandLine {
     /// Everything that was given, as triangles; nothing is read where nothing was given. Places are longitude and
     /// latitude, or the dataset's x and y where it has no coordinate system or this build no PROJ (not so for tracks,
     /// which know but the former). Heights are taken as heights of the dataset, whatever the track's recorder counted
-    /// from; where one is missing it is that of the ground.
+    /// from; where one is missing it is that of the edited ground.
     ///
     /// Throws Error(usage) naming the option that is wrong, Error(input) for a track that cannot be read,
     /// Error(georeference) for a place that the dataset's coordinate system does not have, or that has neither height
     /// nor ground.
-    [[nodiscard]] std::vector<OverlayMesh> meshes(const TileSource& source) const;
+    [[nodiscard]] std::vector<OverlayMesh> meshes(const TileSource& source, const EditList& edits) const;
 
     /// Every option by name without its dashes, as it is in force, for manifests.
     [[nodiscard]] Json toJson() const;

@@ -34,17 +34,22 @@ uint64_t uploadBytes(TileLayer layer) {
 
 ResidentTiles::ResidentTiles(const TileSource& source, const ShaderLibrary& shaders, const GpuTilesOptions& options,
                              bool useImagery)
-    : tree_(source.metadata().tiling, source.metadata().tiling.finestLevel,
+    : source_(source),
+      tree_(source.metadata().tiling, source.metadata().tiling.finestLevel,
             useImagery ? source.metadata().imageryLevel : std::nullopt),
       gpu_(shaders, options) {
-    loadRoots(source);
+    loadRoots();
 }
 
-void ResidentTiles::loadRoots(const TileSource& source) {
-    HeightTile heights = readRoot(source, TileLayer::heights, decodeHeightTile, "height");
-    uploadRoot({.layer = TileLayer::heights, .heights = std::make_shared<HeightTile>(std::move(heights))});
+LoadedTile ResidentTiles::readHeightRoot() const {
+    HeightTile heights = readRoot(source_, TileLayer::heights, decodeHeightTile, "height");
+    return {.layer = TileLayer::heights, .heights = std::make_shared<HeightTile>(std::move(heights))};
+}
+
+void ResidentTiles::loadRoots() {
+    uploadRoot(readHeightRoot());
     if (!tree_.hasImagery()) return;
-    ImageryTile imagery = readRoot(source, TileLayer::imagery, decodeImageryTile, "imagery");
+    ImageryTile imagery = readRoot(source_, TileLayer::imagery, decodeImageryTile, "imagery");
     Bytes chain = gatherMipChain(imagery, {});
     uploadRoot({.layer = TileLayer::imagery,
                 .imageryChain = std::make_shared<Bytes>(std::move(chain)),
@@ -53,8 +58,34 @@ void ResidentTiles::loadRoots(const TileSource& source) {
 
 void ResidentTiles::uploadRoot(const LoadedTile& root) {
     accept(root);
-    TERRAY_CHECK(uploadOne(root));  // the first upload of its layer: every slot is free
+    TERRAY_CHECK_OP(uploadOne(root, nullptr).tiles, ==, 1u);  // the first upload of its layer: every slot is free
     pending_.clear();
+}
+
+const EditList& ResidentTiles::edits() const {
+    static const EditList kNone;
+    return edits_ ? edits_->edits() : kNone;
+}
+
+Uploads ResidentTiles::setEdits(EditList edits, GpuTimer* timer) {
+    const DatasetMetadata& metadata = source_.metadata();
+    const auto before = edits_;
+    edits_.reset();
+    if (!edits.empty())
+        edits_ = std::make_shared<const EditedGround>(metadata.tiling, metadata.quantum, std::move(edits));
+    tree_.setEdits(edits_);
+    const auto near = [](const auto& ground, const TileId& id) { return ground ? ground->near(id) : EditList(); };
+    Uploads done;
+    for (const TileId& id : gpu_.heightTiles()) {
+        if (near(before, id) == near(edits_, id)) continue;
+        if (id == kRoot) {
+            done = uploadOne(readHeightRoot(), timer);
+            continue;
+        }
+        gpu_.evictHeights(id);
+        setResident({TileLayer::heights, id}, false);
+    }
+    return done;
 }
 
 void ResidentTiles::learn(const LoadedTile& tile) {
@@ -130,31 +161,37 @@ bool ResidentTiles::full(TileLayer layer) const {
 }
 
 Uploads ResidentTiles::upload(const std::vector<TileRequest>& wanted, uint64_t budgetBytes,
-                              std::vector<TileKey>* uploaded) {
+                              std::vector<TileKey>* uploaded, GpuTimer* timer) {
     Uploads done;
     std::set<TileLayer> withoutSlot;
     for (const TileRequest& request : wanted) {
         const auto found = pending_.find(keyOf(request));
         if (found == pending_.end() || withoutSlot.contains(request.layer)) continue;
-        const uint64_t bytes = uploadBytes(request.layer);
-        if (done.tiles > 0 && done.bytes + bytes > budgetBytes) break;
-        if (!uploadOne(found->second)) {
+        if (done.tiles > 0 && done.bytes + uploadBytes(request.layer) > budgetBytes) break;
+        const Uploads one = uploadOne(found->second, timer);
+        if (one.tiles == 0) {
             withoutSlot.insert(request.layer);
             continue;
         }
         if (uploaded != nullptr) uploaded->push_back(found->first);
         pending_.erase(found);
-        ++done.tiles;
-        done.bytes += bytes;
+        done += one;
     }
     return done;
 }
 
-bool ResidentTiles::uploadOne(const LoadedTile& tile) {
+GpuTiles::Upload ResidentTiles::uploadHeights(const HeightTile& tile, GpuTimer* timer, Uploads& done) {
+    const std::optional<EditedTile> edited = edits_ ? edits_->describe(tile) : std::nullopt;
+    done.editedTiles = edited ? 1 : 0;
+    return gpu_.uploadHeights(tile, edited ? &*edited : nullptr, timer);
+}
+
+Uploads ResidentTiles::uploadOne(const LoadedTile& tile, GpuTimer* timer) {
     const bool isHeights = tile.layer == TileLayer::heights;
+    Uploads done{.tiles = 1, .bytes = uploadBytes(tile.layer)};
     const GpuTiles::Upload upload =
-        isHeights ? gpu_.uploadHeights(*tile.heights) : gpu_.uploadImagery(tile.id, *tile.imageryChain);
-    if (!upload.done) return false;
+        isHeights ? uploadHeights(*tile.heights, timer, done) : gpu_.uploadImagery(tile.id, *tile.imageryChain);
+    if (!upload.done) return {};
     if (upload.evicted) setResident({tile.layer, *upload.evicted}, false);
     learn(tile);  // the tree may have forgotten it while it waited
     setResident({tile.layer, tile.id}, true);
@@ -163,7 +200,7 @@ bool ResidentTiles::uploadOne(const LoadedTile& tile) {
     } else {
         gpu_.pinImagery(tile.id);
     }
-    return true;
+    return done;
 }
 
 void ResidentTiles::setResident(const TileKey& key, bool resident) {

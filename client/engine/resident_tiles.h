@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -20,19 +21,35 @@ namespace terray {
 /// What moved to the GPU.
 struct Uploads {
     size_t tiles = 0;
+    size_t editedTiles = 0;  ///< of these
     uint64_t bytes = 0;
+
+    Uploads& operator+=(const Uploads& other) {
+        tiles += other.tiles;
+        editedTiles += other.editedTiles;
+        bytes += other.bytes;
+        return *this;
+    }
 };
 
 /// Keeps the GPU's slots and the tile tree's residency in step, and holds tiles that have arrived until their turn to
 /// be uploaded comes. Root tiles are uploaded first and never evicted. GL thread only.
 class ResidentTiles {
   public:
-    /// Reads and uploads the root tiles. Throws Error(dataset) when one cannot be had.
+    /// Reads and uploads the root tiles. Throws Error(dataset) when one cannot be had. `source` and `shaders` outlive
+    /// this object.
     ResidentTiles(const TileSource& source, const ShaderLibrary& shaders, const GpuTilesOptions& options,
                   bool useImagery);
 
     [[nodiscard]] const TileTree& tree() const { return tree_; }
     [[nodiscard]] const GpuTiles& gpu() const { return gpu_; }
+
+    /// From now on the ground is edited so, in place of the edits before. Resident tiles for which that changes
+    /// anything leave the GPU, and are edited from their stored codes when they come again; the root is made anew at
+    /// once. Tiles that the change does not touch stay as they are. Throws Error(dataset) when the root cannot be read
+    /// again.
+    Uploads setEdits(EditList edits, GpuTimer* timer);
+    [[nodiscard]] const EditList& edits() const;
 
     /// Learns what an arrived tile says of its children, and keeps it for upload unless the GPU has it already.
     void accept(LoadedTile tile);
@@ -53,20 +70,26 @@ class ResidentTiles {
 
     /// Uploads what is pending in the order of `wanted`, until the next tile would exceed the budget (the first one
     /// never does) or no slot can be had. Uploaded tiles are pinned, and appended to `uploaded` when given.
-    Uploads upload(const std::vector<TileRequest>& wanted, uint64_t budgetBytes, std::vector<TileKey>* uploaded);
+    /// @param timer  told of edited tiles, may be null
+    Uploads upload(const std::vector<TileRequest>& wanted, uint64_t budgetBytes, std::vector<TileKey>* uploaded,
+                   GpuTimer* timer);
 
   private:
     void pin(const std::vector<DrawNode>& nodes);
-    void loadRoots(const TileSource& source);
+    void loadRoots();
+    [[nodiscard]] LoadedTile readHeightRoot() const;
     void uploadRoot(const LoadedTile& root);
     void learn(const LoadedTile& tile);
-    /// @return whether a slot could be had
-    bool uploadOne(const LoadedTile& tile);
+    /// What one tile's upload came to; no tiles when there was no slot for it.
+    Uploads uploadOne(const LoadedTile& tile, GpuTimer* timer);
+    GpuTiles::Upload uploadHeights(const HeightTile& tile, GpuTimer* timer, Uploads& done);
     void setResident(const TileKey& key, bool resident);
     [[nodiscard]] bool isResident(const TileKey& key) const;
 
+    const TileSource& source_;
     TileTree tree_;
     GpuTiles gpu_;
+    std::shared_ptr<const EditedGround> edits_;  ///< null without edits
     std::unordered_map<TileKey, LoadedTile, TileKeyHash> pending_;
     std::unordered_set<TileId> pinnedHeights_;
     std::unordered_set<TileId> pinnedImagery_;

@@ -48,11 +48,14 @@ std::optional<double> GroundHeights::at(glm::dvec2 place) {
     const GroundRect bounds = tiling.bounds(tile_->id);
     const double spacing = tiling.spacing(tile_->id.level);
     const auto cell = [&](double metres) {
-        return std::min(static_cast<int64_t>(metres / spacing), int64_t{kTileCore - 1}) + kHeightApron;
+        return std::min(static_cast<int64_t>(metres / spacing), int64_t{kTileCore - 1});
     };
-    const uint16_t code = tile_->codes.at(cell(place.x - bounds.west), cell(bounds.north - place.y));
+    const int64_t column = cell(place.x - bounds.west), row = cell(bounds.north - place.y);
+    const uint16_t code = tile_->codes.at(column + kHeightApron, row + kHeightApron);
     if (code == kNoSurface) return {};
-    return tile_->encoding.height(code);
+    const glm::dvec2 centre(bounds.west + (static_cast<double>(column) + 0.5) * spacing,
+                            bounds.north - (static_cast<double>(row) + 0.5) * spacing);
+    return editedHeight(tile_->encoding.height(code), centre, edits_);
 }
 
 }  // namespace terray

@@ -1,21 +1,24 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
 #include "client/stream/dataset_source.h"
+#include "common/terrain_edit.h"
 
 namespace terray {
 
-/// Heights of a dataset's finest samples at single places. Reads tiles from the root down to the place's own, and keeps
-/// the last of them, so that places near one another cost one reading. One thread at a time.
+/// Heights of a dataset's finest samples, edited, at single places. Reads tiles from the root down to the place's own,
+/// and keeps the last of them, so that places near one another cost one reading. One thread at a time.
 class GroundHeights {
   public:
-    /// @param source  outlives this object
-    explicit GroundHeights(const TileSource& source) : source_(source) {}
+    /// @param source  outlives this object  @param edits  of the ground
+    explicit GroundHeights(const TileSource& source, EditList edits = {}) : source_(source), edits_(std::move(edits)) {}
 
-    /// Height of the sample whose cell holds the place, metres: the top of its column. None where there is no surface.
+    /// Height of the sample whose cell holds the place, metres: the top of its column, edited at the sample's centre as
+    /// the GPU does it (EditedGround). None where there is no surface.
     /// Throws Error(dataset) when a tile cannot be read.
     [[nodiscard]] std::optional<double> at(glm::dvec2 place);
 
@@ -25,6 +28,7 @@ class GroundHeights {
     [[nodiscard]] bool find(glm::dvec2 place);
 
     const TileSource& source_;
+    EditList edits_;
     std::optional<HeightTile> tile_;
 };
 

@@ -22,6 +22,26 @@ CodeMaxima::CodeMaxima(GridView<const uint16_t> codes) {
     }
 }
 
+CodeMaxima::CodeMaxima(const HeightTile& stored, const EditedTile& edited) : CodeMaxima(stored.codes.view()) {
+    // The shader rounds what lies halfway between two codes to either.
+    const double slack = 1e-3 * edited.encoding.metresPerCode();
+    const GridRect core = Tiling::coreSamples(stored.id);
+    for (int y = 0; y < kSquares; ++y) {
+        for (int x = 0; x < kSquares; ++x) {
+            uint16_t& greatest = maxima_.at(x, y);
+            if (greatest == kNoSurface) continue;
+            const double left = static_cast<double>(core.x + x * kSquare),
+                         top = static_cast<double>(core.y + y * kSquare);
+            const double west = edited.corner.x + left * edited.spacing, north = edited.corner.y - top * edited.spacing;
+            const double side = kSquare * edited.spacing;
+            const GroundRect ring = widened({west, north - side, west + side, north}, edited.spacing);
+            const double height = stored.encoding.height(greatest);
+            const EditBounds bounds = editBounds(editsNear(edited.edits, ring), ring, {height, height}, 0);
+            greatest = edited.encoding.code(bounds.heights.highest + slack);
+        }
+    }
+}
+
 uint16_t CodeMaxima::over(double cornerX, double cornerY, double side) const {
     const auto first = [](double corner) { return std::clamp(static_cast<int>(corner) / kSquare, 0, kSquares - 1); };
     const int count = std::max(1, static_cast<int>(side) / kSquare);

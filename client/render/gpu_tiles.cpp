@@ -110,7 +110,8 @@ GlTexture makeImageryArray(uint32_t slots) {
 }  // namespace
 
 GpuTiles::GpuTiles(const ShaderLibrary& shaders, const GpuTilesOptions& options)
-    : heightSlots_(slotCount(options.heightBudgetBytes, heightLevelBytes(0) + maximaBytes(), options.heightTiles)),
+    : shaders_(shaders),
+      heightSlots_(slotCount(options.heightBudgetBytes, heightLevelBytes(0) + maximaBytes(), options.heightTiles)),
       imagerySlots_(options.imageryTiles == 0
                         ? 0
                         : slotCount(options.imageryBudgetBytes, imageryUploadBytes(), options.imageryTiles)),
@@ -120,19 +121,34 @@ GpuTiles::GpuTiles(const ShaderLibrary& shaders, const GpuTilesOptions& options)
     if (imagerySlots_.capacity() > 0) imageryTexture_ = makeImageryArray(imagerySlots_.capacity());
 }
 
-GpuTiles::Upload GpuTiles::uploadHeights(const HeightTile& tile) {
+GpuTiles::Upload GpuTiles::uploadHeights(const HeightTile& tile, const EditedTile* edited, GpuTimer* timer) {
     TERRAY_CHECK_OP(tile.codes.width(), ==, kHeightTileSide);
     TERRAY_CHECK_OP(tile.codes.height(), ==, kHeightTileSide);
     const std::optional<SlotTable::Place> place = heightSlots_.place(tile.id);
     if (!place) return {};
     if (place->evicted) residentHeights_.erase(*place->evicted);
+    if (edited != nullptr && timer != nullptr) timer->enter(GpuPass::edit);
     residentHeights_[tile.id] = {
-        .slot = place->slot, .encoding = tile.encoding, .record = tile.record, .maxima = CodeMaxima(tile.codes.view())};
+        .slot = place->slot,
+        .encoding = edited != nullptr ? edited->encoding : tile.encoding,
+        .record = edited != nullptr ? edited->record : tile.record,
+        .maxima = edited != nullptr ? CodeMaxima(tile, *edited) : CodeMaxima(tile.codes.view())};
     glPixelStorei(GL_UNPACK_ALIGNMENT, alignof(uint16_t));
     glTextureSubImage3D(heightTexture_.name(), 0, 0, 0, static_cast<GLint>(place->slot), kHeightTileSide,
                         kHeightTileSide, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, tile.codes.cells().data());
+    if (edited != nullptr) edit(place->slot, tile, *edited);
     buildMaxima(place->slot);
+    if (edited != nullptr && timer != nullptr) timer->enter(GpuPass::upload);
     return {.done = true, .evicted = place->evicted};
+}
+
+void GpuTiles::edit(uint32_t slot, const HeightTile& tile, const EditedTile& edited) {
+    if (!editor_) editor_ = std::make_unique<TileEditor>(shaders_);
+    editor_->apply(heightTexture_.name(), slot, tile.id, tile.encoding, edited);
+}
+
+void GpuTiles::evictHeights(const TileId& id) {
+    if (heightSlots_.remove(id)) residentHeights_.erase(id);
 }
 
 GpuTiles::Upload GpuTiles::uploadImagery(const TileId& id, ByteView chain) {
@@ -194,6 +210,13 @@ void GpuTiles::touchImagery(const TileId& id) {
 const ResidentHeights* GpuTiles::heights(const TileId& id) const {
     const auto found = residentHeights_.find(id);
     return found == residentHeights_.end() ? nullptr : &found->second;
+}
+
+std::vector<TileId> GpuTiles::heightTiles() const {
+    std::vector<TileId> tiles;
+    for (const auto& [id, resident] : residentHeights_) tiles.push_back(id);
+    std::ranges::sort(tiles);
+    return tiles;
 }
 
 std::optional<uint32_t> GpuTiles::imagerySlot(const TileId& id) const {

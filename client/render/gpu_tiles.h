@@ -1,13 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include "client/render/code_maxima.h"
 #include "client/render/gl_objects.h"
+#include "client/render/gpu_timer.h"
 #include "client/render/shader_library.h"
 #include "client/render/slot_table.h"
+#include "client/render/tile_editor.h"
 #include "common/bytes.h"
 #include "common/height_tile.h"
 #include "common/imagery_tile.h"
@@ -32,7 +36,7 @@ struct GpuTileBytes {
     uint64_t imagery = 0;  ///< BC1 with its 4 mips
 };
 
-/// What the renderer must know of a resident height tile.
+/// What the renderer must know of a resident height tile, as it is drawn: of an edited one, edited.
 struct ResidentHeights {
     uint32_t slot = 0;  ///< layer of the array
     HeightEncoding encoding;
@@ -51,9 +55,10 @@ struct ResidentHeights {
 ///
 /// GL thread only. Never more than the budgets, except that there is at least one slot of each kind that is used.
 /// Throws Error(graphics) when the driver has less memory than that. Uploads change the current program, texture unit 0
-/// and image units 0..4.
+/// and image units 0..4, those of edited tiles also uniform buffer 0 and storage buffers 0 and 1.
 class GpuTiles {
   public:
+    /// @param shaders  outlives this object
     GpuTiles(const ShaderLibrary& shaders, const GpuTilesOptions& options);
 
     /// Uploads a tile and builds its pyramid, evicting the least recently used tile that is not pinned by the current
@@ -63,9 +68,14 @@ class GpuTiles {
         bool done = false;
         std::optional<TileId> evicted;
     };
-    Upload uploadHeights(const HeightTile& tile);
+    /// @param edited  what edits make of the tile; null: nothing. The first edited tile compiles the shader for it.
+    /// @param timer   told when an edited tile is made, from its upload to its pyramid; may be null
+    Upload uploadHeights(const HeightTile& tile, const EditedTile* edited = nullptr, GpuTimer* timer = nullptr);
     /// @param chain  gatherMipChain's bytes
     Upload uploadImagery(const TileId& id, ByteView chain);
+
+    /// Frees a tile's slot, pinned or not; a tile that is not resident is left alone.
+    void evictHeights(const TileId& id);
 
     /// Starts a frame: nothing is pinned any more.
     void beginFrame();
@@ -78,6 +88,8 @@ class GpuTiles {
     void touchImagery(const TileId& id);
 
     [[nodiscard]] const ResidentHeights* heights(const TileId& id) const;
+    /// The resident height tiles, in the order of their ids.
+    [[nodiscard]] std::vector<TileId> heightTiles() const;
     [[nodiscard]] std::optional<uint32_t> imagerySlot(const TileId& id) const;
 
     [[nodiscard]] GLuint heightTexture() const { return heightTexture_.name(); }
@@ -89,6 +101,8 @@ class GpuTiles {
     [[nodiscard]] size_t residentImagery() const { return imagerySlots_.size(); }
     /// Allocated, whether or not filled.
     [[nodiscard]] GpuTileBytes allocatedBytes() const;
+    /// Allocated for edits; 0 while no tile has been edited.
+    [[nodiscard]] uint64_t editBufferBytes() const { return editor_ ? editor_->bufferBytes() : 0; }
     /// Bytes one upload moves, for upload budgets.
     [[nodiscard]] static constexpr uint64_t heightUploadBytes() {
         return uint64_t{kHeightTileSide} * kHeightTileSide * 2;
@@ -96,14 +110,17 @@ class GpuTiles {
     [[nodiscard]] static constexpr uint64_t imageryUploadBytes() { return imageryChainBytes(); }
 
   private:
+    void edit(uint32_t slot, const HeightTile& tile, const EditedTile& edited);
     void buildMaxima(uint32_t slot);
 
+    const ShaderLibrary& shaders_;
     SlotTable heightSlots_;
     SlotTable imagerySlots_;
     std::unordered_map<TileId, ResidentHeights> residentHeights_;
     GlTexture heightTexture_;
     GlTexture imageryTexture_;
     GlProgram maximaProgram_;
+    std::unique_ptr<TileEditor> editor_;  ///< from the first edited tile on
 };
 
 }  // namespace terray

@@ -3,7 +3,7 @@
 namespace terray {
 
 std::string_view name(GpuPass pass) {
-    static constexpr std::array<std::string_view, kGpuPasses> kNames = {"upload", "id",      "march",
+    static constexpr std::array<std::string_view, kGpuPasses> kNames = {"upload", "edit",    "id",     "march",
                                                                         "shadow", "resolve", "overlay"};
     return kNames.at(static_cast<size_t>(pass));
 }

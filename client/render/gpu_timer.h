@@ -9,9 +9,9 @@
 
 namespace terray {
 
-/// The passes whose GPU time is reported apart.
-enum class GpuPass : uint8_t { upload, id, march, shadow, resolve, overlay };
-inline constexpr size_t kGpuPasses = 6;
+/// The passes whose GPU time is reported apart. edit: uploads of tiles that edits change, from codes to pyramid.
+enum class GpuPass : uint8_t { upload, edit, id, march, shadow, resolve, overlay };
+inline constexpr size_t kGpuPasses = 7;
 [[nodiscard]] std::string_view name(GpuPass pass);
 
 /// GPU time of each pass of a frame, by GL timestamp queries. A pass may be entered many times in a frame; its times

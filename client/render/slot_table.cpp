@@ -49,4 +49,13 @@ bool SlotTable::touch(const TileId& id) {
     return true;
 }
 
+bool SlotTable::remove(const TileId& id) {
+    const auto found = where_.find(id);
+    if (found == where_.end()) return false;
+    free_.push_back(found->second->slot);
+    order_.erase(found->second);
+    where_.erase(found);
+    return true;
+}
+
 }  // namespace terray

@@ -36,6 +36,8 @@ class SlotTable {
     bool pin(const TileId& id);
     /// Most recently used. @return whether the tile has a slot
     bool touch(const TileId& id);
+    /// Frees a tile's slot, pinned or not. @return whether it had one
+    bool remove(const TileId& id);
 
   private:
     struct Entry {

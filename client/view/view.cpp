@@ -132,7 +132,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
 
     const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
     EngineOptions chosen = engineOptions(options, kind, source->metadata());
-    chosen.overlay = options.engine.overlay(*source);
+    options.engine.place(*source, chosen);
     const std::optional<Camera> given = cameraOf(options, source->metadata());
     requireWritable(out, options.force);
 

@@ -132,6 +132,9 @@ TEST_F(ErrorTest, BadUseIsRefused) {
     EXPECT_EQ(measure({"--sweep", "colour"}), ExitCode::usage);
     EXPECT_NE(message_.find("expected tolerance"), std::string::npos) << message_;
     EXPECT_EQ(measure({"--supersampling", "9"}), ExitCode::usage);
+    std::ofstream(own_ / "edits.json")
+        << R"({"format":"terray-edits","version":1,"edits":[{"kind":"crater","at":{"x_m":0,"y_m":0},"radius_m":9,"depth_m":1}]})";
+    EXPECT_EQ(measure({"--edits", (own_ / "edits.json").string()}), ExitCode::usage) << "the truth is not edited";
     EXPECT_FALSE(std::filesystem::exists(own_ / "run"));
 }
 

@@ -42,7 +42,9 @@ std::vector<OverlayMesh> meshesOf(const TileSource& source, const std::vector<st
     CommandLine line("test", "");
     options.declare(line);
     EXPECT_TRUE(line.parse(arguments));
-    return options.overlay(source);
+    EngineOptions drawn;
+    options.place(source, drawn);
+    return drawn.overlay;
 }
 
 ExitCode refusal(const TileSource& source, const std::vector<std::string>& arguments) {
@@ -58,6 +60,31 @@ std::string placeText(double x, double y) {
     char text[64];
     std::snprintf(text, sizeof(text), "%.9f,%.9f", x, y);
     return text;
+}
+
+/// A file with one edit that levels the ground around a place to 4321 m.
+std::string levellingFile(const test::TemporaryDirectory& directory, glm::dvec2 place) {
+    const std::filesystem::path path = directory / "edits.json";
+    std::ofstream(path)
+        << R"({"format":"terray-edits","version":1,"edits":[{"kind":"level","radius_m":50,"height_m":4321,"along":[{"x_m":)"
+        << std::to_string(place.x) << R"(,"y_m":)" << std::to_string(place.y) << "}]}]}";
+    return path.string();
+}
+
+TEST(EditOptions, PinsStandOnEditedGround) {
+    const PlacedDataset dataset("");
+    const test::TemporaryDirectory directory;
+    const std::string file = levellingFile(directory, dataset.centre());
+    const std::string text = placeText(dataset.centre().x, dataset.centre().y);
+    EXPECT_EQ(meshesOf(dataset, {"--edits", file, "--marker", text}).at(0).origin.z, 4321);
+}
+
+TEST(EditOptions, AFileThatCannotBeReadIsRefusedAsInput) {
+    const PlacedDataset dataset("");
+    const test::TemporaryDirectory directory;
+    EXPECT_EQ(refusal(dataset, {"--edits", (directory / "none.json").string()}), ExitCode::input);
+    EXPECT_EQ(refusal(dataset, {"--edits", levellingFile(directory, {0, 0})}), ExitCode::ok);
+    EXPECT_EQ(dataset.reads(), 0u) << "edits alone need no ground";
 }
 
 TEST(OverlayOptions, NothingGivenReadsNothingAndMakesNothing) {

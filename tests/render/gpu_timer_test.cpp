@@ -73,7 +73,7 @@ TEST_F(GpuTimerTest, AFrameWithoutPassesTakesNoTime) {
 TEST(GpuPass, HasItsOwnName) {
     std::set<std::string_view> names;
     for (size_t i = 0; i < kGpuPasses; ++i) names.insert(name(static_cast<GpuPass>(i)));
-    EXPECT_EQ(names, (std::set<std::string_view>{"upload", "id", "march", "shadow", "resolve", "overlay"}));
+    EXPECT_EQ(names, (std::set<std::string_view>{"upload", "edit", "id", "march", "shadow", "resolve", "overlay"}));
 }
 
 }  // namespace
