@@ -1,15 +1,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "common/command_line.h"
 #include "common/json.h"
+#include "common/parse_number.h"
 #include "preprocess/block_plan.h"
 #include "preprocess/commands.h"
 #include "preprocess/dataset_builder.h"
+#include "preprocess/file_lists.h"
+#include "preprocess/filled_heights.h"
 #include "preprocess/output_directory.h"
 #include "preprocess/progress.h"
 #include "preprocess/raster_files.h"
@@ -27,6 +32,7 @@ struct SharedOptions {
     uint64_t memoryBytes = uint64_t{1} << 30;
     bool force = false;
     bool resume = false;
+    bool dryRun = false;
     bool quiet = false;
     bool jsonProgress = false;
 
@@ -36,6 +42,7 @@ struct SharedOptions {
         line.bytes("--memory", memoryBytes, "memory to stay within, whatever the size of the sources; default: 1G");
         line.flag("--force", force, "replace the dataset that --out holds");
         line.flag("--resume", resume, "go on with a build of --out that was stopped or killed, if there is one");
+        line.flag("--dry-run", dryRun, "only estimate tiles, bytes, disk, memory and time; writes nothing");
         line.flag("--quiet", quiet, "print nothing but errors");
         line.flag("--json-progress", jsonProgress, "print progress and result as one JSON object for each line");
     }
@@ -88,6 +95,35 @@ void requirePositive(const std::string& name, double value) {
     throw Error(ExitCode::usage, name + " is " + readableNumber(value) + "; it must be a number above 0");
 }
 
+/// "west,south,east,north" in metres.
+GroundRect parseBounds(const std::string& text) {
+    std::vector<double> numbers;
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');) {
+        if (const auto number = parseNumber(part)) numbers.push_back(*number);
+    }
+    const bool isWhole = numbers.size() == 4 && std::ranges::count(text, ',') == 3;
+    if (!isWhole || numbers[0] >= numbers[2] || numbers[1] >= numbers[3])
+        throw Error(ExitCode::usage,
+                    "--bbox is \"" + text +
+                        "\"; expected west,south,east,north in metres, west below east and south below "
+                        "north, such as 500000,5100000,520000,5120000");
+    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+MosaicPriority parsePriority(const std::string& text) {
+    if (text == "order") return MosaicPriority::order;
+    if (text == "resolution") return MosaicPriority::resolution;
+    throw Error(ExitCode::usage, "--priority is \"" + text + "\"; expected resolution or order");
+}
+
+NodataPolicy parseNodataPolicy(const std::string& text) {
+    if (text == "none") return NodataPolicy::holes;
+    for (const NodataPolicy policy : {NodataPolicy::sea, NodataPolicy::interpolate})
+        if (text == nameOf(policy)) return policy;
+    throw Error(ExitCode::usage, "--fill-nodata is \"" + text + "\"; expected none, sea or interpolate");
+}
+
 /// Builds, and ends the display whether that works or not.
 BuildSummary buildWithDisplay(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
     struct EndOfDisplay {
@@ -97,25 +133,71 @@ BuildSummary buildWithDisplay(const HeightSource& heights, const OpenPhoto& open
     return buildDataset(heights, openPhoto, request);
 }
 
+void printEstimate(const BuildEstimate& estimate, const SharedOptions& shared) {
+    if (shared.style() == ProgressStyle::json) {
+        const Json json(Json::Object{{"event", "estimate"},
+                                     {"heightTiles", estimate.heightTiles},
+                                     {"imageryTiles", estimate.imageryTiles},
+                                     {"archiveBytes", estimate.archiveBytes},
+                                     {"diskBytes", estimate.diskBytes},
+                                     {"memoryBytes", estimate.memoryBytes},
+                                     {"seconds", estimate.seconds},
+                                     {"jobs", estimate.jobs}});
+        std::printf("%s\n", json.dump(0).c_str());
+    }
+    if (shared.style() == ProgressStyle::automatic) std::fputs(toText(estimate, shared.out).c_str(), stdout);
+}
+
+/// Builds, or only estimates, and says on stdout what came of it.
+void buildOrEstimate(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request,
+                     const SharedOptions& shared) {
+    if (!shared.dryRun) {
+        printSummary(buildWithDisplay(heights, openPhoto, request), shared.style());
+        return;
+    }
+    const BuildEstimate estimate = estimateDataset(heights, openPhoto, request);
+    printEstimate(estimate, shared);
+    requireSpace(estimate, shared.out);
+}
+
 /// What a user asked `build` for.
 struct BuildOptions {
     HeightSourceOptions heights;
-    std::vector<std::string> imagery;
+    PhotoSourceOptions imagery;
+    std::string bbox;
+    std::string priority = "resolution";
+    std::string fillNodataText = "none";
+    NodataPolicy nodataPolicy = NodataPolicy::holes;
     SharedOptions shared;
 
     void declare(CommandLine& line) {
-        line.positionals("DEM", heights.files, "heights: georeferenced rasters, later ones on top, or one plain image")
+        line.positionals("DEM", heights.files,
+                         "heights: georeferenced rasters, or one plain image; @LIST names a file with one name a line")
             .required();
-        line.list("--imagery", imagery, "FILE", "photos to drape over the heights, later ones on top");
+        line.list("--imagery", imagery.files, "FILE", "photos to drape over the heights, or @LIST");
         line.option("--crs", heights.crs, "AUTH:CODE",
                     "metric coordinate system of the dataset; default: the source's, or one chosen");
+        line.option("--bbox", bbox, "W,S,E,N", "only this area, metres in the dataset's coordinate system");
+        line.option(
+            "--priority", priority, "HOW",
+            "which file is on top where several overlap: resolution (the finest, the default) or order (the last)");
         line.option("--spacing", heights.spacing, "METRES", "between samples; needed for plain images");
         line.option("--height-scale", heights.heightScale, "S", "metres for one unit of the source, such as 0.3048");
         line.option("--height-offset", heights.heightOffset, "O", "metres to add to all heights");
         line.option("--nodata", heights.nodata, "V", "value of the source that stands for no surface");
+        line.option(
+            "--fill-nodata", fillNodataText, "HOW",
+            "what becomes of samples without data: none (the default, they stay holes), sea (0 m) or interpolate "
+            "(from heights within 100 samples)");
         shared.declare(line);
     }
-    void check() const {
+    /// Takes the options' texts apart; refuses what can be refused before any work.
+    void check() {
+        heights.files = withoutLists(heights.files);
+        imagery.files = withoutLists(imagery.files);
+        if (!bbox.empty()) heights.bounds = parseBounds(bbox);
+        heights.priority = imagery.priority = parsePriority(priority);
+        nodataPolicy = parseNodataPolicy(fillNodataText);
         if (heights.spacing) requirePositive("--spacing", *heights.spacing);
         if (heights.heightScale && (*heights.heightScale == 0 || !std::isfinite(*heights.heightScale)))
             throw Error(ExitCode::usage, "--height-scale must be a number other than 0");
@@ -127,16 +209,22 @@ struct BuildOptions {
     [[nodiscard]] std::string text() const {
         OptionsText options("build");
         if (!heights.crs.empty()) options.add("--crs", heights.crs);
+        if (!bbox.empty()) options.add("--bbox", bbox);
+        if (heights.priority == MosaicPriority::order) options.add("--priority", priority);
         if (heights.spacing) options.add("--spacing", *heights.spacing);
         if (heights.heightScale) options.add("--height-scale", *heights.heightScale);
         if (heights.heightOffset != 0) options.add("--height-offset", heights.heightOffset);
         if (heights.nodata) options.add("--nodata", *heights.nodata);
+        if (nodataPolicy != NodataPolicy::holes) options.add("--fill-nodata", fillNodataText);
         return options.text();
     }
 };
 
 std::unique_ptr<HeightSource> openHeights(const HeightSourceOptions& options) {
     const bool isImage = options.files.size() == 1 && isPlainImage(options.files.front());
+    if (isImage && options.bounds)
+        throw Error(ExitCode::georeference, "cannot take --bbox out of \"" + options.files.front() +
+                                                "\": a plain image does not say where it lies");
     return isImage ? openImageHeights(options) : openGdalHeights(options);
 }
 
@@ -152,15 +240,16 @@ ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<b
     const std::unique_ptr<BuildObserver> observer = makeObserver(options.shared.style());
     options.heights.cacheBytes = cacheShare(options.shared.memoryBytes);
     options.heights.note = [&](const std::string& text) { observer->note(text); };
-    const std::unique_ptr<HeightSource> heights = openHeights(options.heights);
+    const std::unique_ptr<HeightSource> heights = fillNodata(openHeights(options.heights), options.nodataPolicy);
     OpenPhoto openPhoto;
-    if (!options.imagery.empty())
+    options.imagery.cacheBytes = options.heights.cacheBytes;
+    if (!options.imagery.files.empty())
         openPhoto = [&](const Tiling& tiling, const HeightGridInfo& info) {
-            return openGdalPhotos(options.imagery, tiling, info.size, info.crsWkt, options.heights.cacheBytes);
+            return openGdalPhotos(options.imagery, tiling, info.size, info.crsWkt);
         };
-    const BuildSummary summary =
-        buildWithDisplay(*heights, openPhoto, options.shared.request(options.text(), stop, *observer));
-    printSummary(summary, options.shared.style());
+    BuildRequest request = options.shared.request(options.text(), stop, *observer);
+    request.nodataPolicy = nameOf(options.nodataPolicy);
+    buildOrEstimate(*heights, openPhoto, request, options.shared);
     return ExitCode::ok;
 }
 
@@ -194,8 +283,7 @@ ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<b
     if (imagery)
         openPhoto = [&](const Tiling& tiling, const HeightGridInfo&) { return makeSyntheticPhoto(terrain, tiling); };
     const std::unique_ptr<BuildObserver> observer = makeObserver(shared.style());
-    const BuildSummary summary = buildWithDisplay(*heights, openPhoto, shared.request(text.text(), stop, *observer));
-    printSummary(summary, shared.style());
+    buildOrEstimate(*heights, openPhoto, shared.request(text.text(), stop, *observer), shared);
     return ExitCode::ok;
 }
 

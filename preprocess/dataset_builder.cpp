@@ -9,6 +9,7 @@
 #include "common/version.h"
 #include "preprocess/bc1.h"
 #include "preprocess/build_context.h"
+#include "preprocess/build_estimate.h"
 #include "preprocess/build_heading.h"
 #include "preprocess/build_journal.h"
 #include "preprocess/dataset_archives.h"
@@ -53,9 +54,68 @@ DatasetMetadata describe(const HeightGridInfo& info, const Tiling& tiling, const
     metadata.quantum = request.quantum.value_or(chooseQuantum(info));
     metadata.tool = "terray-preprocess " + std::string(buildInfo().version);
     metadata.options = request.optionsText;
+    metadata.nodataPolicy = request.nodataPolicy;
     metadata.sources = info.files;
     return metadata;
 }
+
+/// A build of at least this many tiles takes minutes, so that a second spent on whether its disk will do is well spent.
+constexpr uint64_t kManyTiles = 4096;
+
+/// What is known before any block is made.
+struct Preparation {
+    DatasetMetadata metadata;  ///< without what only the build itself finds out
+    std::unique_ptr<ColourSource> photo;
+
+    Preparation(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
+        const HeightGridInfo& info = heights.info();
+        requireUsable(info);
+        const Tiling tiling{.west = info.west,
+                            .north = info.north,
+                            .finestSpacing = info.spacing,
+                            .finestLevel = heightExtent(info).finestLevel};
+        metadata = describe(info, tiling, request);
+        if (!openPhoto) return;
+        requireBc1Encoder();
+        photo = openPhoto(tiling, info);
+        requireOverlap();
+        metadata.imageryLevel = photo->level();
+        metadata.imageryBounds = overlapOf(photo->bounds(), metadata.groundBounds());
+        metadata.sources.insert(metadata.sources.end(), photo->files().begin(), photo->files().end());
+    }
+
+    [[nodiscard]] std::optional<PyramidExtent> imagery() const {
+        if (!photo) return {};
+        return imageryExtent(metadata.tiling, metadata.samples, photo->level());
+    }
+
+    [[nodiscard]] WorkPlan plan(const HeightSource& heights, const BuildRequest& request) const {
+        const std::optional<PyramidExtent> extent = imagery();
+        WorkPlan work =
+            planWork(request.jobs, request.memoryBytes, heightExtent(heights.info()), extent ? &*extent : nullptr);
+        work.heightDepth = request.blockDepth.value_or(work.heightDepth);
+        work.imageryDepth = request.blockDepth.value_or(work.imageryDepth);
+        return work;
+    }
+
+    [[nodiscard]] EstimateInput estimateInput(const HeightSource& heights, const WorkPlan& work,
+                                              uint64_t memoryBytes) const {
+        return {.heights = heights,
+                .photo = photo.get(),
+                .tiling = metadata.tiling,
+                .quantum = metadata.quantum,
+                .work = work,
+                .memoryBytes = memoryBytes};
+    }
+
+  private:
+    void requireOverlap() const {
+        if (!overlapOf(photo->bounds(), metadata.groundBounds()))
+            throw Error(ExitCode::georeference, "heights and imagery do not overlap");
+        if (photo->level() > kMaxTileLevel)
+            throw Error(ExitCode::input, "the imagery is too fine for the heights: more than 31 levels are needed");
+    }
+};
 
 /// Why a build cannot be gone on with, and what to do.
 [[noreturn]] void refuseResume(const std::filesystem::path& out, const std::string& reason) {
@@ -66,37 +126,23 @@ DatasetMetadata describe(const HeightGridInfo& info, const Tiling& tiling, const
 /// One build, from sources to a directory with its final name.
 class DatasetBuild {
   public:
-    DatasetBuild(const HeightSource& heights, const BuildRequest& request)
+    DatasetBuild(const HeightSource& heights, const BuildRequest& request, Preparation preparation)
         : heights_(heights),
           request_(request),
+          preparation_(std::move(preparation)),
           observer_(request.observer != nullptr ? *request.observer : silent_),
           stop_(request.stop != nullptr ? *request.stop : never_),
           output_(request.out, {.replace = request.replace, .resume = request.resume}) {
-        const HeightGridInfo& info = heights.info();
-        const Tiling tiling{.west = info.west,
-                            .north = info.north,
-                            .finestSpacing = info.spacing,
-                            .finestLevel = heightExtent(info).finestLevel};
-        summary_.metadata = describe(info, tiling, request);
+        summary_.metadata = preparation_.metadata;
     }
 
-    BuildSummary run(const OpenPhoto& openPhoto) {
-        DatasetMetadata& metadata = summary_.metadata;
-        std::unique_ptr<ColourSource> photo;
-        if (openPhoto) {
-            requireBc1Encoder();
-            photo = openPhoto(metadata.tiling, heights_.info());
-            requireOverlap(*photo);
-            metadata.imageryLevel = photo->level();
-            metadata.imageryBounds = overlapOf(photo->bounds(), metadata.groundBounds());
-            metadata.sources.insert(metadata.sources.end(), photo->files().begin(), photo->files().end());
-        }
+    BuildSummary run() {
         if (output_.isPublished()) {
             takeWhole();
         } else {
             BuildJournal journal(output_.journal());
-            const WorkPlan work = planOrTakeUp(journal, photo.get());
-            buildTiles(photo.get(), work, journal);
+            const WorkPlan work = planOrTakeUp(journal);
+            buildTiles(work, journal);
         }
         throwIfStopped(stop_);
         output_.commit();
@@ -107,44 +153,26 @@ class DatasetBuild {
     [[nodiscard]] bool isResumable() const { return output_.isKept(); }
 
   private:
-    void requireOverlap(const ColourSource& photo) const {
-        if (!overlapOf(photo.bounds(), summary_.metadata.groundBounds()))
-            throw Error(ExitCode::georeference, "heights and imagery do not overlap");
-        if (photo.level() > kMaxTileLevel)
-            throw Error(ExitCode::input, "the imagery is too fine for the heights: more than 31 levels are needed");
-    }
-
-    [[nodiscard]] PyramidExtent imageryExtentOf(const ColourSource& photo) const {
-        return imageryExtent(summary_.metadata.tiling, summary_.metadata.samples, photo.level());
-    }
-
-    [[nodiscard]] WorkPlan plan(const ColourSource* photo) const {
-        const PyramidExtent heights = heightExtent(heights_.info());
-        std::optional<PyramidExtent> imagery;
-        if (photo != nullptr) imagery = imageryExtentOf(*photo);
-        WorkPlan work = planWork(request_.jobs, request_.memoryBytes, heights, imagery ? &*imagery : nullptr);
-        work.heightDepth = request_.blockDepth.value_or(work.heightDepth);
-        work.imageryDepth = request_.blockDepth.value_or(work.imageryDepth);
-        return work;
-    }
-
     /// The plan of a build that begins, which goes into the journal, or of one that is gone on with.
-    WorkPlan planOrTakeUp(BuildJournal& journal, const ColourSource* photo) {
-        if (!journal.empty()) return takeUp(journal, photo);
+    WorkPlan planOrTakeUp(BuildJournal& journal) {
+        if (!journal.empty()) return takeUp(journal);
         if (request_.resume) observer_.note("there is nothing to resume: the build starts from the beginning");
-        WorkPlan work = plan(photo);
+        WorkPlan work = preparation_.plan(heights_, request_);
         if (!work.note.empty()) observer_.note(work.note);
+        if (tilesOf(heightExtent(heights_.info())) + tilesOf(preparation_.imagery().value_or(PyramidExtent{})) >=
+            kManyTiles)
+            requireSpace(estimateBuild(preparation_.estimateInput(heights_, work, request_.memoryBytes)), request_.out);
         journal.commit(encodeHeading(makeHeading(summary_.metadata, work.heightDepth, work.imageryDepth)), {});
         journal.sync();
         return work;
     }
 
-    WorkPlan takeUp(BuildJournal& journal, const ColourSource* photo) const {
+    WorkPlan takeUp(BuildJournal& journal) const {
         const auto begun = decodeHeading(journal.read(0));
         if (!begun.ok()) refuseResume(request_.out, begun.failure().message);
         requireSame(*begun);
         std::optional<uint32_t> imageryDepth;
-        if (photo != nullptr) imageryDepth = begun->imageryDepth;
+        if (preparation_.photo) imageryDepth = begun->imageryDepth;
         return planResumedWork(request_.jobs, request_.memoryBytes, begun->heightDepth, imageryDepth);
     }
 
@@ -171,7 +199,7 @@ class DatasetBuild {
         summary_.metadata = whole;
     }
 
-    void buildTiles(const ColourSource* photo, const WorkPlan& work, BuildJournal& journal) {
+    void buildTiles(const WorkPlan& work, BuildJournal& journal) {
         DatasetMetadata& metadata = summary_.metadata;
         summary_.jobs = work.jobs;
         BuildContext context{.jobs = work.jobs,
@@ -190,19 +218,19 @@ class DatasetBuild {
         metadata.minHeight = totals.minHeight;
         metadata.maxHeight = totals.maxHeight;
         metadata.levelErrors = totals.levelErrors;
-        if (photo != nullptr) {
-            PyramidBlocks imageryBlocks(Pyramid::imagery, imageryExtentOf(*photo), context);
-            buildImagery(*photo, work, imageryBlocks, context);
+        if (preparation_.photo) {
+            PyramidBlocks imageryBlocks(Pyramid::imagery, *preparation_.imagery(), context);
+            buildImagery(work, imageryBlocks, context);
             writeArchive(imageryBlocks, kImageryFile, *metadata.imageryLevel);
         }
         writeArchive(heightBlocks, kHeightsFile, metadata.tiling.finestLevel);
     }
 
-    void buildImagery(const ColourSource& photo, const WorkPlan& work, PyramidBlocks& blocks, BuildContext& context) {
+    void buildImagery(const WorkPlan& work, PyramidBlocks& blocks, BuildContext& context) {
         DatasetMetadata& metadata = summary_.metadata;
         try {
-            metadata.imageryTiles =
-                buildImageryPyramid(photo, metadata.tiling, metadata.samples, work.imageryDepth, blocks, context);
+            metadata.imageryTiles = buildImageryPyramid(*preparation_.photo, metadata.tiling, metadata.samples,
+                                                        work.imageryDepth, blocks, context);
         } catch (const Error& error) {
             // No texel over the heights: that is so however often it is tried.
             if (error.code() == ExitCode::georeference) output_.keep(false);
@@ -234,6 +262,7 @@ class DatasetBuild {
 
     const HeightSource& heights_;
     const BuildRequest& request_;
+    Preparation preparation_;
     SilentObserver silent_;
     BuildObserver& observer_;
     std::atomic<bool> never_ = false;
@@ -272,15 +301,20 @@ PmtilesHeader archiveHeader(const DatasetMetadata& metadata, uint32_t finestLeve
 }
 
 BuildSummary buildDataset(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
-    requireUsable(heights.info());
-    DatasetBuild build(heights, request);
+    DatasetBuild build(heights, request, Preparation(heights, openPhoto, request));
     try {
-        return build.run(openPhoto);
+        return build.run();
     } catch (const Error& error) {
         if (!build.isResumable() || error.code() == ExitCode::usage) throw;
         throw Error(error.code(), std::string(error.what()) + " (what is done is kept in " + request.out.string() +
                                       ".partial; the same command with --resume goes on from there)");
     }
+}
+
+BuildEstimate estimateDataset(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
+    const Preparation preparation(heights, openPhoto, request);
+    const WorkPlan work = preparation.plan(heights, request);
+    return estimateBuild(preparation.estimateInput(heights, work, request.memoryBytes));
 }
 
 }  // namespace terray

@@ -10,6 +10,7 @@
 
 #include "common/dataset_metadata.h"
 #include "common/pmtiles.h"
+#include "preprocess/build_estimate.h"
 #include "preprocess/build_observer.h"
 #include "preprocess/raster_source.h"
 
@@ -18,7 +19,8 @@ namespace terray {
 /// Opens the photo that goes over the heights once it is known where these lie.
 using OpenPhoto = std::function<std::unique_ptr<ColourSource>(const Tiling& tiling, const HeightGridInfo& heights)>;
 
-/// How a dataset is to be built. Only `optionsText` and `quantum` show in the result; all else changes time and memory.
+/// How a dataset is to be built. Only `optionsText`, `nodataPolicy` and `quantum` show in the result; all else changes
+/// time and memory.
 struct BuildRequest {
     std::filesystem::path out;
     bool replace = false;  ///< an old dataset at `out` may go (--force)
@@ -26,6 +28,7 @@ struct BuildRequest {
     int jobs = 1;
     uint64_t memoryBytes = uint64_t{1} << 30;
     std::string optionsText;                  ///< DatasetMetadata::options
+    std::string nodataPolicy = "holes";       ///< DatasetMetadata::nodataPolicy
     std::optional<double> quantum;            ///< metres; none: chosen by chooseQuantum()
     std::optional<uint32_t> blockDepth;       ///< levels in a block instead of the planned ones
     const std::atomic<bool>* stop = nullptr;  ///< once true the build ends with Error(interrupted)
@@ -52,6 +55,11 @@ struct BuildSummary {
 /// input, output, georeference, unsupported, interrupted.
 [[nodiscard]] BuildSummary buildDataset(const HeightSource& heights, const OpenPhoto& openPhoto,
                                         const BuildRequest& request);
+
+/// What buildDataset() with the same arguments would cost; touches nothing. Throws Error as that does for what it
+/// cannot use, save for the output.
+[[nodiscard]] BuildEstimate estimateDataset(const HeightSource& heights, const OpenPhoto& openPhoto,
+                                            const BuildRequest& request);
 
 /// Height quantum for a source: 1 cm; 1 mm for floats that lie half a metre apart or closer, as lidar does.
 [[nodiscard]] double chooseQuantum(const HeightGridInfo& heights);

@@ -179,7 +179,7 @@ class HeightOpener {
 
     /// Each file as 32-bit floats with NaN for nodata; files that share a grid side by side.
     void groupFiles() {
-        groups_ = groupByGrid(rasters_);
+        groups_ = groupByGrid(rasters_, mosaicOrder(rasters_, options_.priority));
         for (RasterGroup& group : groups_) {
             std::vector<std::string> parts;
             for (const size_t index : group.members) parts.push_back(floatRaster(rasters_[index]));
@@ -212,13 +212,17 @@ class HeightOpener {
     }
 
     void chooseCrs() {
-        const Crs& own = groups_.front().crs;
+        // The file that the user named first, wherever it lies in the mosaic.
+        const RasterGroup& home = *std::ranges::find_if(groups_, [](const RasterGroup& group) {
+            return std::ranges::find(group.members, 0u) != group.members.end();
+        });
+        const Crs& own = home.crs;
         crs_ = options_.crs.empty() ? own : gdal::describeCrs(options_.crs);
         if (!options_.crs.empty() && !crs_.isMetric())
             throw Error(ExitCode::georeference,
                         "cannot build in " + crs_.name + ": expected a projected system in metres, such as EPSG:32632");
         if (!crs_.isMetric()) {
-            crs_ = metricCrs(groups_.front().raster);
+            crs_ = metricCrs(home.raster);
             note(own.name + " is not in metres: warped to " + crs_.name + " (another: --crs)");
         }
         info_.crsWkt = crs_.wkt;
@@ -236,18 +240,41 @@ class HeightOpener {
         const double spacing = options_.spacing.value_or(own ? own->spacing : footprints[finest].finestSpacing);
         const bool keepsOwn = own && std::abs(spacing - own->spacing) <= 1e-6 * spacing;
         if (keepsOwn && groups_.size() == 1) {
-            stack_.rasters = {groups_.front().raster};
-            setGrid(*own);
+            takeAsItIs(groups_.front(), *own);
             return;
         }
         GroundRect extent = footprints.front().extent;
         for (const gdal::Footprint& footprint : footprints) extent = unionOf(extent, footprint.extent);
-        const SquareGrid grid = coveringGrid(extent, keepsOwn ? own->spacing : spacing, keepsOwn ? &*own : nullptr);
+        const SquareGrid grid =
+            within(coveringGrid(extent, keepsOwn ? own->spacing : spacing, keepsOwn ? &*own : nullptr));
         for (const RasterGroup& group : groups_) stack_.rasters.push_back(warped(group, grid));
         note("heights are resampled (bilinear) to " + metres(grid.spacing) + " in " +
              (crs_.wkt.empty() ? "the unnamed plane" : crs_.name));
         info_.sourceStep = 0;
         setGrid(grid);
+    }
+
+    void takeAsItIs(const RasterGroup& group, const SquareGrid& own) {
+        const SquareGrid grid = within(own);
+        stack_.rasters = {group.raster};
+        if (grid.size != own.size) {
+            const int64_t column = std::llround((grid.west - own.west) / own.spacing);
+            const int64_t row = std::llround((own.north - grid.north) / own.spacing);
+            stack_.rasters = {keep(
+                gdal::translate(group.raster, {"-srcwin", std::to_string(column), std::to_string(row),
+                                               std::to_string(grid.size.width), std::to_string(grid.size.height)}))};
+        }
+        setGrid(grid);
+    }
+
+    /// The part of a grid that the user asked for.
+    SquareGrid within(const SquareGrid& grid) const {
+        if (!options_.bounds) return grid;
+        const std::optional<SquareGrid> part = clippedGrid(grid, *options_.bounds);
+        if (part) return *part;
+        throw Error(ExitCode::georeference, "the heights do not reach into the area of --bbox: they cover " +
+                                                describe(grid.bounds(), info_.crsName) + ", the area is " +
+                                                describe(*options_.bounds, info_.crsName));
     }
 
     /// The group's grid when its samples can be taken as they are.
@@ -290,6 +317,10 @@ class HeightOpener {
 };
 
 }  // namespace
+
+void interpolateHoles(Grid<float>& heights, int distance) {
+    gdal::fillHoles(heights, distance);
+}
 
 std::unique_ptr<HeightSource> openGdalHeights(const HeightSourceOptions& options) {
     return HeightOpener(options).open();

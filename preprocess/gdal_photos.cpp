@@ -96,11 +96,11 @@ class PhotoOpener {
   public:
     explicit PhotoOpener(Ground ground) : ground_(std::move(ground)) {}
 
-    std::unique_ptr<ColourSource> open(const std::vector<std::string>& files) {
-        TERRAY_CHECK(!files.empty());
-        for (const std::string& file : files) photos_.push_back(gdal::inspect(file));
+    std::unique_ptr<ColourSource> open(const PhotoSourceOptions& options) {
+        TERRAY_CHECK(!options.files.empty());
+        for (const std::string& file : options.files) photos_.push_back(gdal::inspect(file));
         for (RasterFacts& photo : photos_) place(photo);
-        std::vector<RasterGroup> groups = groupByGrid(photos_);
+        std::vector<RasterGroup> groups = groupByGrid(photos_, mosaicOrder(photos_, options.priority));
         for (RasterGroup& group : groups) layOut(group);
         measure(groups);
         for (size_t i = 0; i < groups.size(); ++i) addLayer(groups[i], footprints_[i]);
@@ -231,13 +231,14 @@ class PhotoOpener {
 
 }  // namespace
 
-std::unique_ptr<ColourSource> openGdalPhotos(const std::vector<std::string>& files, const Tiling& tiling,
-                                             GridSize samples, const std::string& crsWkt, uint64_t cacheBytes) {
-    gdal::limitCache(cacheBytes);
+std::unique_ptr<ColourSource> openGdalPhotos(const PhotoSourceOptions& options, const Tiling& tiling, GridSize samples,
+                                             const std::string& crsWkt) {
+    gdal::limitCache(options.cacheBytes);
     const SquareGrid heights{
         .west = tiling.west, .north = tiling.north, .spacing = tiling.finestSpacing, .size = samples};
     const std::string crsName = crsWkt.empty() ? "" : gdal::describeCrs(crsWkt).name;
-    return PhotoOpener({.tiling = tiling, .area = heights.bounds(), .crsWkt = crsWkt, .crsName = crsName}).open(files);
+    return PhotoOpener({.tiling = tiling, .area = heights.bounds(), .crsWkt = crsWkt, .crsName = crsName})
+        .open(options);
 }
 
 }  // namespace terray

@@ -205,10 +205,7 @@ Transformer transformerTo(GDALDataset& dataset, const std::string& crsWkt, const
     return transformer;
 }
 
-struct Point {
-    double x = 0;
-    double y = 0;
-};
+using Point = PixelPlace;
 
 /// Places of pixels, and only of those that have one.
 std::vector<Point> placesOf(void* transformer, const std::vector<Point>& pixels) {
@@ -220,22 +217,6 @@ std::vector<Point> placesOf(void* transformer, const std::vector<Point>& pixels)
         if (succeeded != FALSE && std::isfinite(point.x) && std::isfinite(point.y)) places.push_back(point);
     }
     return places;
-}
-
-/// Pixels all over a raster, and densely along its outline, which another system bends: between two of them an arc that
-/// turns by 60 degrees in all bulges by 1e-5 of its length.
-std::vector<Point> outlineOf(GDALDataset& dataset) {
-    constexpr int kSteps = 100;
-    constexpr int kInnerStep = 5;
-    std::vector<Point> pixels;
-    for (int i = 0; i <= kSteps; ++i)
-        for (int j = 0; j <= kSteps; ++j) {
-            const bool isOutline = i == 0 || i == kSteps || j == 0 || j == kSteps;
-            if (!isOutline && (i % kInnerStep != 0 || j % kInnerStep != 0)) continue;
-            pixels.push_back({dataset.GetRasterXSize() * (static_cast<double>(i) / kSteps),
-                              dataset.GetRasterYSize() * (static_cast<double>(j) / kSteps)});
-        }
-    return pixels;
 }
 
 /// Extends bounds in degrees by the poles inside an area of the plane. PROJ (9.1) looks for the second pole only where
@@ -385,7 +366,8 @@ Footprint footprint(const std::string& raster, const std::string& crsWkt) {
     const auto stepTo = [&](const Point& there) { return std::hypot(there.x - here.x, there.y - here.y); };
     Footprint result{.extent = {here.x, here.y, here.x, here.y},
                      .finestSpacing = std::min(stepTo(steps[1]), stepTo(steps[2]))};
-    for (const Point& place : placesOf(transformer.get(), outlineOf(*dataset)))
+    for (const Point& place :
+         placesOf(transformer.get(), outlinePixels({dataset->GetRasterXSize(), dataset->GetRasterYSize()})))
         result.extent = unionOf(result.extent, {place.x, place.y, place.x, place.y});
     return result;
 }
@@ -421,6 +403,28 @@ std::optional<GroundRect> lonLatBounds(const GroundRect& area, const std::string
                           std::isfinite(bounds.north);
     if (!isFinite) return {};
     return bounds;
+}
+
+void fillHoles(Grid<float>& heights, int distance) {
+    initialise();
+    const Messages messages;
+    const auto width = static_cast<int>(heights.width());
+    const auto height = static_cast<int>(heights.size().height);
+    GDALDriver& memory = *GetGDALDriverManager()->GetDriverByName("MEM");
+    const GDALDatasetUniquePtr raster(memory.Create("", width, height, 1, GDT_Float32, nullptr));
+    const GDALDatasetUniquePtr mask(memory.Create("", width, height, 1, GDT_Byte, nullptr));
+    std::vector<uint8_t> valid;
+    for (const float value : heights.cells()) valid.push_back(std::isnan(value) ? 0 : 255);
+    const std::array<const char*, 2> options{"TEMP_FILE_DRIVER=MEM", nullptr};
+    const auto pass = [&](GDALDataset& dataset, GDALRWFlag way, void* cells, GDALDataType type) {
+        return dataset.GetRasterBand(1)->RasterIO(way, 0, 0, width, height, cells, width, height, type, 0, 0, nullptr);
+    };
+    const bool isDone = raster && mask && pass(*raster, GF_Write, heights.cells().data(), GDT_Float32) == CE_None &&
+                        pass(*mask, GF_Write, valid.data(), GDT_Byte) == CE_None &&
+                        GDALFillNodata(raster->GetRasterBand(1), mask->GetRasterBand(1), distance, 0, 0,
+                                       const_cast<char**>(options.data()), nullptr, nullptr) == CE_None &&
+                        pass(*raster, GF_Read, heights.cells().data(), GDT_Float32) == CE_None;
+    if (!isDone) refuse("cannot fill the holes of the heights (" + messages.text() + ")");
 }
 
 struct RasterReader::State {

@@ -84,6 +84,11 @@ struct Footprint {
 /// unknown.
 [[nodiscard]] std::optional<GroundRect> lonLatBounds(const GroundRect& area, const std::string& crsWkt);
 
+/// Gives each hole (NaN) up to `distance` cells from a height one that is interpolated from heights around it, weighted
+/// by inverse distance (GDALFillNodata, no smoothing). A cell depends on those within `distance` along either axis
+/// alone.
+void fillHoles(Grid<float>& heights, int distance);
+
 /// Reads one raster. Opened by the first read, since GDAL ties some handles to the thread that opens them. For one
 /// thread.
 class RasterReader {

@@ -22,9 +22,12 @@ namespace {
 std::unique_ptr<HeightSource> openGdalHeights(const HeightSourceOptions& options) {
     refuse("read \"" + options.files.front() + "\"", "GDAL", "TERRAY_WITH_GDAL");
 }
-std::unique_ptr<ColourSource> openGdalPhotos(const std::vector<std::string>& files, const Tiling&, GridSize,
-                                             const std::string&, uint64_t) {
-    refuse("read \"" + files.front() + "\"", "GDAL", "TERRAY_WITH_GDAL");
+std::unique_ptr<ColourSource> openGdalPhotos(const PhotoSourceOptions& options, const Tiling&, GridSize,
+                                             const std::string&) {
+    refuse("read \"" + options.files.front() + "\"", "GDAL", "TERRAY_WITH_GDAL");
+}
+void interpolateHoles(Grid<float>&, int) {
+    refuse("interpolate holes", "GDAL", "TERRAY_WITH_GDAL");
 }
 bool hasGeoreference(const std::string&) {
     return false;

@@ -11,12 +11,12 @@ namespace terray {
 // The doors to files. Each is compiled from one source file that alone sees its library; built without it, the function
 // throws Error(unsupported) naming the library and the configure option.
 
-/// Georeferenced rasters through GDAL: one file, or several mosaicked in the order given (later ones on top).
+/// Georeferenced rasters through GDAL: one file, or several mosaicked, the finest on top, or as `priority` says.
 ///
 /// Degrees, rotated grids, non-square cells, or a `crs` other than the source's are warped on the fly (bilinear, on a
 /// grid whose spacing is the source's finest on the ground unless `spacing` says otherwise); otherwise samples are
-/// taken as they are. Fails with Error(input) for what is missing, no raster, cut short or empty, Error(georeference)
-/// for a system that is missing or unusable.
+/// taken as they are. With `bounds` the grid ends with the cells that touch these. Fails with Error(input) for what is
+/// missing, no raster, cut short or empty, Error(georeference) for a system that is missing or unusable.
 [[nodiscard]] std::unique_ptr<HeightSource> openGdalHeights(const HeightSourceOptions& options);
 
 /// A plain height image (PNG, TIFF, EXR) through OpenImageIO: first channel, `spacing` metres per pixel, corner at (0,
@@ -26,12 +26,15 @@ namespace terray {
 /// Whether `file` is to be read as a plain image: OpenImageIO knows it and GDAL finds no georeference in it.
 [[nodiscard]] bool isPlainImage(const std::string& file);
 
-/// Photos through GDAL, mosaicked (later ones on top) and warped to the imagery grid of `tiling`. Grey, RGB, RGBA,
-/// paletted, 8 or 16 bits. A photo without georeference is stretched over the ground of the heights when these are a
-/// plain image too. Throws Error(georeference) when no photo overlaps the heights.
-[[nodiscard]] std::unique_ptr<ColourSource> openGdalPhotos(const std::vector<std::string>& files, const Tiling& tiling,
-                                                           GridSize samples, const std::string& crsWkt,
-                                                           uint64_t cacheBytes);
+/// Photos through GDAL, mosaicked (the finest on top, or as `priority` says) and warped to the imagery grid of
+/// `tiling`. Grey, RGB, RGBA, paletted, 8 or 16 bits. A photo without georeference is stretched over the ground of the
+/// heights when these are a plain image too. Throws Error(georeference) when no photo overlaps the heights.
+[[nodiscard]] std::unique_ptr<ColourSource> openGdalPhotos(const PhotoSourceOptions& options, const Tiling& tiling,
+                                                           GridSize samples, const std::string& crsWkt);
+
+/// Gives each hole (NaN) up to `distance` cells from a height one that GDAL interpolates from the heights around it. A
+/// cell depends on those within `distance` along either axis alone.
+void interpolateHoles(Grid<float>& heights, int distance);
 
 /// A procedural terrain: a ridged fractal with valleys, plains and a lake, the same for the same seed on every machine,
 /// and any window of any size of it at the same cost per sample.

@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "common/check.h"
 #include "common/error.h"
@@ -31,11 +34,32 @@ void add(RasterGroup& group, size_t index, const gdal::RasterFacts& raster) {
     group.members.push_back(index);
 }
 
+/// Metres from one row to the next, of degrees along the meridian, to three digits.
+double groundSpacing(const gdal::RasterFacts& raster) {
+    constexpr double kMetresPerDegree = 111195;  // of a sphere of 6371 km
+    const GeoTransform& transform = *raster.geoTransform;
+    const bool isDegrees = !raster.crs.wkt.empty() && !raster.crs.isProjected;
+    const double metres =
+        std::hypot(transform[2], transform[5]) * (isDegrees ? kMetresPerDegree : raster.crs.metresPerUnit);
+    const double unit = std::pow(10, std::floor(std::log10(metres)) - 2);
+    return std::round(metres / unit) * unit;
+}
+
 }  // namespace
 
-std::vector<RasterGroup> groupByGrid(const std::vector<gdal::RasterFacts>& rasters) {
+std::vector<size_t> mosaicOrder(const std::vector<gdal::RasterFacts>& rasters, MosaicPriority priority) {
+    std::vector<size_t> order(rasters.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    if (priority == MosaicPriority::order) return order;
+    std::vector<double> spacings;
+    std::ranges::transform(rasters, std::back_inserter(spacings), groundSpacing);
+    std::ranges::stable_sort(order, std::greater(), [&](size_t index) { return spacings[index]; });
+    return order;
+}
+
+std::vector<RasterGroup> groupByGrid(const std::vector<gdal::RasterFacts>& rasters, const std::vector<size_t>& order) {
     std::vector<RasterGroup> groups;
-    for (size_t i = 0; i < rasters.size(); ++i) {
+    for (const size_t i : order) {
         const gdal::RasterFacts& raster = rasters[i];
         TERRAY_CHECK(raster.geoTransform.has_value());
         if (!groups.empty() && fits(groups.back(), raster))

@@ -13,15 +13,21 @@ namespace terray {
 /// Files that lie on one grid of one system, so that they can be laid side by side before anything is resampled: then
 /// no seam is left where one ends and the next begins.
 struct RasterGroup {
-    std::vector<size_t> members;  ///< indices of the files, in the order given
+    std::vector<size_t> members;  ///< indices of the files, the lowest first
     Crs crs;
     GeoTransform transform{};  ///< of the smallest grid that holds all members
     GridSize size;
     std::string raster;  ///< name of the members laid side by side, once that is done
 };
 
-/// Groups consecutive files (consecutive only, since later files cover earlier ones). Each must have its geoTransform.
-[[nodiscard]] std::vector<RasterGroup> groupByGrid(const std::vector<gdal::RasterFacts>& rasters);
+/// Indices of the files from the lowest to the one on top. Resolution is taken at three digits, for degrees along the
+/// meridian, so that parts of one product stay together. Each must have its geoTransform.
+[[nodiscard]] std::vector<size_t> mosaicOrder(const std::vector<gdal::RasterFacts>& rasters, MosaicPriority priority);
+
+/// Groups files that follow one another in `order` (these only, since later files cover earlier ones). Each must have
+/// its geoTransform.
+[[nodiscard]] std::vector<RasterGroup> groupByGrid(const std::vector<gdal::RasterFacts>& rasters,
+                                                   const std::vector<size_t>& order);
 
 /// A number as text that reads back as the same number.
 [[nodiscard]] std::string exactText(double value);

@@ -30,6 +30,20 @@ double distanceToWhole(double value) {
 
 }  // namespace
 
+std::vector<PixelPlace> outlinePixels(GridSize size) {
+    constexpr int kSteps = 100;
+    constexpr int kInnerStep = 5;
+    std::vector<PixelPlace> pixels;
+    for (int i = 0; i <= kSteps; ++i)
+        for (int j = 0; j <= kSteps; ++j) {
+            const bool isOutline = i == 0 || i == kSteps || j == 0 || j == kSteps;
+            if (!isOutline && (i % kInnerStep != 0 || j % kInnerStep != 0)) continue;
+            pixels.push_back({static_cast<double>(size.width) * (static_cast<double>(i) / kSteps),
+                              static_cast<double>(size.height) * (static_cast<double>(j) / kSteps)});
+        }
+    return pixels;
+}
+
 GroundRect SquareGrid::bounds() const {
     return {west, north - static_cast<double>(size.height) * spacing, west + static_cast<double>(size.width) * spacing,
             north};
@@ -61,6 +75,25 @@ SquareGrid coveringGrid(const GroundRect& extent, double spacing, const SquareGr
     };
     grid.size = {cells(extent.east - grid.west), cells(grid.north - extent.south)};
     return grid;
+}
+
+std::optional<SquareGrid> clippedGrid(const SquareGrid& grid, const GroundRect& area) {
+    // Of cells along one axis from its start, as distances in cells: those between `from` and `to`.
+    const auto first = [](double from, int64_t cells) {
+        return static_cast<int64_t>(std::clamp(std::floor(from + kRounding), 0.0, static_cast<double>(cells)));
+    };
+    const auto last = [](double to, int64_t cells) {
+        return static_cast<int64_t>(std::clamp(std::ceil(to - kRounding), 0.0, static_cast<double>(cells)));
+    };
+    const int64_t left = first((area.west - grid.west) / grid.spacing, grid.size.width);
+    const int64_t right = last((area.east - grid.west) / grid.spacing, grid.size.width);
+    const int64_t top = first((grid.north - area.north) / grid.spacing, grid.size.height);
+    const int64_t bottom = last((grid.north - area.south) / grid.spacing, grid.size.height);
+    if (left >= right || top >= bottom) return {};
+    return SquareGrid{.west = grid.west + static_cast<double>(left) * grid.spacing,
+                      .north = grid.north - static_cast<double>(top) * grid.spacing,
+                      .spacing = grid.spacing,
+                      .size = {right - left, bottom - top}};
 }
 
 GroundRect unionOf(const GroundRect& a, const GroundRect& b) {

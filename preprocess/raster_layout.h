@@ -30,6 +30,16 @@ struct Crs {
     [[nodiscard]] bool isMetric() const { return wkt.empty() || (isProjected && metresPerUnit == 1); }
 };
 
+/// A place in a raster, in pixels from its upper-left corner.
+struct PixelPlace {
+    double x = 0;
+    double y = 0;
+};
+
+/// Pixels all over a raster, and densely along its outline, which another system bends: between two of them an arc that
+/// turns by 60 degrees in all bulges by 1e-5 of its length.
+[[nodiscard]] std::vector<PixelPlace> outlinePixels(GridSize size);
+
 /// Square cells, the upper-left corner of the first at (west, north).
 struct SquareGrid {
     double west = 0;     ///< metres
@@ -55,6 +65,9 @@ struct SquareGrid {
 /// upper-left corner. Overhangs below a millionth of a cell count as rounding and add no cell. A side has at most 10^15
 /// cells; who needs fewer must check.
 [[nodiscard]] SquareGrid coveringGrid(const GroundRect& extent, double spacing, const SquareGrid* anchor);
+
+/// The part of a grid whose cells touch `area` by more than a millionth of a cell; none when no cell does.
+[[nodiscard]] std::optional<SquareGrid> clippedGrid(const SquareGrid& grid, const GroundRect& area);
 
 /// The area that holds both.
 [[nodiscard]] GroundRect unionOf(const GroundRect& a, const GroundRect& b);

@@ -72,6 +72,12 @@ class ColourSource {
     [[nodiscard]] virtual std::unique_ptr<ColourReader> openReader() const = 0;
 };
 
+/// Which of several files covers the others where they overlap.
+enum class MosaicPriority {
+    resolution,  ///< the finer one; of equally fine ones the one given later
+    order        ///< the one given later
+};
+
 /// How a user asked for heights to be read; every field as the option of `terray-preprocess build` of that name.
 struct HeightSourceOptions {
     std::vector<std::string> files;
@@ -80,8 +86,17 @@ struct HeightSourceOptions {
     std::optional<double> heightScale;  ///< metres per unit of the source; none: as the file says, else 1
     double heightOffset = 0;            ///< metres, added after scaling
     std::optional<double> nodata;       ///< in the source's unit, instead of what the file says
-    uint64_t cacheBytes = 256u << 20;   ///< for the reading library's own cache
+    std::optional<GroundRect> bounds;   ///< metres in the dataset's system: only samples that touch it are taken
+    MosaicPriority priority = MosaicPriority::resolution;
+    uint64_t cacheBytes = 256u << 20;              ///< for the reading library's own cache
     std::function<void(const std::string&)> note;  ///< told what was decided, such as the chosen system
+};
+
+/// How a user asked for photos to be read.
+struct PhotoSourceOptions {
+    std::vector<std::string> files;
+    MosaicPriority priority = MosaicPriority::resolution;
+    uint64_t cacheBytes = 256u << 20;  ///< for the reading library's own cache
 };
 
 }  // namespace terray

@@ -206,6 +206,37 @@ TEST_F(Program, AnInterruptedBuildIsResumed) {
     EXPECT_EQ(run({"verify", path("out")}).exitCode, 0);
 }
 
+TEST_F(Program, ADryRunEstimatesAndWritesNothing) {
+    const std::vector<std::string> arguments = {"synth", "--size", "3000", "--out", path("out")};
+    auto dry = arguments;
+    dry.insert(dry.end(), {"--dry-run", "--json-progress"});
+    const ProgramResult estimated = run(dry);
+    EXPECT_EQ(estimated.exitCode, 0) << estimated.err;
+    EXPECT_TRUE(directory_.names().empty());
+    const auto estimate = Json::parse(estimated.out);
+    ASSERT_TRUE(estimate.ok()) << estimated.out;
+    // 6 x 6, 3 x 3, 2 x 2 and 1 tiles; a fractal is as rough everywhere, but for its lake.
+    EXPECT_EQ(estimate->numberAt("heightTiles").value(), 50);
+    EXPECT_EQ(run(arguments).exitCode, 0);
+    const auto bytes = static_cast<double>(std::filesystem::file_size(directory_ / "out" / kHeightsFile));
+    EXPECT_NEAR(estimate->numberAt("archiveBytes").value(), bytes, bytes / 2);
+    EXPECT_GE(estimate->numberAt("diskBytes").value(), 1.9 * estimate->numberAt("archiveBytes").value());
+
+    const ProgramResult text = run({"synth", "--size", "3000", "--out", path("other"), "--dry-run"});
+    EXPECT_NE(text.out.find("tiles: at most 50 of heights"), std::string::npos) << text.out;
+    EXPECT_EQ(directory_.names(), Names{"out"});
+}
+
+TEST_F(Program, RefusesABuildThatTheDiskCannotHold) {
+    // 2^29 samples along a side are 2.9e17; no disk holds a tenth of a byte for each.
+    const std::vector<std::string> arguments = {"synth", "--size", "536870912", "--out", path("out")};
+    expectRefusal(run(arguments), ExitCode::output, "are needed while it is built");
+    auto dry = arguments;
+    dry.emplace_back("--dry-run");
+    expectRefusal(run(dry), ExitCode::output, "are needed while it is built");
+    EXPECT_TRUE(directory_.names().empty());
+}
+
 TEST_F(Program, RefusesWhatIsNoDataset) {
     expectRefusal(run({"verify", path("missing")}), ExitCode::dataset, "no such directory");
     expectRefusal(run({"info", path("missing")}), ExitCode::dataset, "no such directory");
@@ -263,6 +294,16 @@ TEST_F(Program, SaysWhichLibraryRastersNeed) {
     EXPECT_TRUE(directory_.names().empty());
 }
 #else
+TEST_F(Program, RefusesAreasAndPrioritiesThatAreNone) {
+    for (const char* area : {"1,2,3", "1,2,3,4,5", "3,2,1,4", "1,4,3,2", "1,2,x,4", "1,2,3,4,", "1,,3,4"})
+        expectRefusal(run({"build", "a.tif", "--bbox", area, "--out", path("out")}), ExitCode::usage, "--bbox is");
+    expectRefusal(run({"build", "a.tif", "--priority", "size", "--out", path("out")}), ExitCode::usage,
+                  "--priority is");
+    expectRefusal(run({"build", "a.tif", "--fill-nodata", "yes", "--out", path("out")}), ExitCode::usage,
+                  "--fill-nodata is");
+    expectRefusal(run({"build", "@" + path("absent"), "--out", path("out")}), ExitCode::input, "list of files");
+}
+
 TEST_F(Program, NamesASourceThatIsMissing) {
     expectRefusal(run({"build", path("missing.tif"), "--out", path("out")}), ExitCode::input, "missing.tif");
     std::ofstream(directory_ / "text.tif") << "this is no raster";

@@ -147,6 +147,76 @@ TEST_F(GdalMosaic, KeepsTheFinestOfSeveralSpacings) {
     for (const float height : heights.cells()) ASSERT_EQ(height, 5);
 }
 
+/// Covers the same ground as constant() of that corner with cells twice as wide.
+RasterSpec coarser(double west, double north, double height) {
+    RasterSpec spec = constant(west, north, height);
+    spec.transform = northUp(west, north, 20);
+    spec.size = {5, 5};
+    return spec;
+}
+
+TEST_F(GdalMosaic, LaysTheFinestOnTopUnlessTheOrderIsToDecide) {
+    add("fine.tif", constant(500000, 5200000, 1));
+    add("coarse.tif", coarser(500000, 5200000, 2));
+    EXPECT_EQ(readAll(*openGdalHeights(options_)).at(5, 5), 1);
+    options_.priority = MosaicPriority::order;
+    EXPECT_EQ(readAll(*openGdalHeights(options_)).at(5, 5), 2);
+    std::ranges::reverse(options_.files);
+    EXPECT_EQ(readAll(*openGdalHeights(options_)).at(5, 5), 1);
+    options_.priority = MosaicPriority::resolution;
+    EXPECT_EQ(readAll(*openGdalHeights(options_)).at(5, 5), 1);
+}
+
+TEST_F(GdalMosaic, ComparesDegreesWithMetres) {
+    // 0.0001 degrees are 11 m.
+    add("metres.tif", constant(500000, 5200000, 1));
+    const LonLat corner = lonLatOf("EPSG:32632", 500000, 5200000);
+    add("degrees.tif", {.size = {20, 20},
+                        .transform = northUp(corner.longitude - 0.0002, corner.latitude + 0.0002, 0.0001),
+                        .crs = "EPSG:4326",
+                        .value = [](int, int64_t, int64_t) { return 2.0; }});
+    EXPECT_EQ(readAll(*openGdalHeights(options_)).at(5, 5), 1);
+    options_.files.erase(options_.files.begin());
+    options_.files.push_back(writeRaster((folder_ / "thirty.tif").string(), coarser(500000, 5200000, 3)));
+    const auto source = openGdalHeights(options_);
+    // The system is that of the first file given, whichever lies on top.
+    EXPECT_EQ(source->info().crsName, "EPSG:32632");
+    const Grid<float> heights = readAll(*source);
+    EXPECT_NEAR(heights.at(heights.width() / 2, heights.size().height / 2), 2, 1e-3);
+}
+
+TEST_F(GdalMosaic, TakesOnlyTheCellsThatTouchTheAreaAskedFor) {
+    RasterSpec spec = constant(500000, 5200000, 0);
+    spec.value = [](int, int64_t x, int64_t y) { return static_cast<double>(10 * x + y); };
+    add("a.tif", spec);
+    const Grid<float> whole = readAll(*openGdalHeights(options_));
+    options_.bounds = GroundRect{500025, 5199950, 500060, 5199990.5};
+    const auto source = openGdalHeights(options_);
+    EXPECT_EQ(source->info().size, (GridSize{4, 5}));
+    EXPECT_EQ(source->info().west, 500020);
+    EXPECT_EQ(source->info().north, 5200000);
+    const Grid<float> part = readAll(*source);
+    for (int64_t y = 0; y < 5; ++y)
+        for (int64_t x = 0; x < 4; ++x) ASSERT_EQ(part.at(x, y), whole.at(x + 2, y));
+    options_.bounds = GroundRect{0, 0, 9e6, 9e6};
+    EXPECT_EQ(openGdalHeights(options_)->info().size, (GridSize{10, 10}));
+    options_.bounds = GroundRect{400000, 5199950, 400060, 5199990};
+    const Refusal refusal = refusalOf([&] { (void)openGdalHeights(options_); });
+    EXPECT_EQ(refusal.code, ExitCode::georeference);
+    EXPECT_TRUE(refusal.says("--bbox") && refusal.says("500000")) << refusal.message;
+}
+
+TEST_F(GdalMosaic, TakesPartOfWhatIsResampled) {
+    add("degrees.tif", degreesPart(0, 100));
+    const HeightGridInfo whole = openGdalHeights(options_)->info();
+    const double middle = whole.west + 0.5 * static_cast<double>(whole.size.width) * whole.spacing;
+    options_.bounds = GroundRect{middle, 0, 9e6, 9e6};
+    const auto source = openGdalHeights(options_);
+    EXPECT_EQ(source->info().size.height, whole.size.height);
+    EXPECT_NEAR(static_cast<double>(source->info().size.width), static_cast<double>(whole.size.width) / 2, 1);
+    EXPECT_EQ(source->info().spacing, whole.spacing);
+}
+
 TEST_F(GdalMosaic, RefusesFilesOfDifferentUnits) {
     add("metres.tif", constant(500000, 5200000, 1));
     RasterSpec feet = constant(500100, 5200000, 1);

@@ -17,7 +17,8 @@ class PhotoKinds : public testing::Test {
         spec.transform = northUp(500000, 5200000, 1);
         spec.crs = "EPSG:32632";
         file_ = writeRaster((folder_ / "photo.tif").string(), spec);
-        return readCells(*openGdalPhotos({file_}, kTiling, {512, 512}, "EPSG:32632", 1 << 20), {0, 0, 16, 16});
+        return readCells(*openGdalPhotos({.files = {file_}, .cacheBytes = 1 << 20}, kTiling, {512, 512}, "EPSG:32632"),
+                         {0, 0, 16, 16});
     }
     static constexpr Tiling kTiling{.west = 500000, .north = 5200000, .finestSpacing = 1, .finestLevel = 0};
     TemporaryDirectory folder_;
@@ -99,7 +100,8 @@ TEST_F(PhotoKinds, CutShortAreRefused) {
     (void)pixelsOf(spec);
     std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 300);
     const Refusal refusal = refusalOf([&] {
-        (void)readCells(*openGdalPhotos({file_}, kTiling, {512, 512}, "EPSG:32632", 1 << 20), {0, 0, 16, 16});
+        (void)readCells(*openGdalPhotos({.files = {file_}, .cacheBytes = 1 << 20}, kTiling, {512, 512}, "EPSG:32632"),
+                        {0, 0, 16, 16});
     });
     EXPECT_EQ(refusal.code, ExitCode::input);
     EXPECT_TRUE(refusal.says("photo.tif")) << refusal.message;
@@ -117,8 +119,8 @@ TEST_F(PhotoKinds, HolesShowThePhotoBelow) {
     above.value = [](int, int64_t x, int64_t) { return x < 8 ? 0.0 : 200.0; };
     const std::vector<std::string> files{writeRaster((folder_ / "below.tif").string(), below),
                                          writeRaster((folder_ / "above.tif").string(), above)};
-    const Grid<Rgba> pixels =
-        readCells(*openGdalPhotos(files, kTiling, {512, 512}, "EPSG:32632", 1 << 20), {0, 0, 16, 16});
+    const Grid<Rgba> pixels = readCells(
+        *openGdalPhotos({.files = files, .cacheBytes = 1 << 20}, kTiling, {512, 512}, "EPSG:32632"), {0, 0, 16, 16});
     EXPECT_EQ(pixels.at(3, 3), (Rgba{50, 50, 50, 255}));
     EXPECT_EQ(pixels.at(12, 3), (Rgba{200, 200, 200, 255}));
 }

@@ -35,7 +35,7 @@ class GdalPhotos : public testing::Test {
         std::vector<std::string> files;
         for (const RasterSpec& spec : specs)
             files.push_back(writeRaster((folder_ / ("photo" + std::to_string(files.size()) + ".tif")).string(), spec));
-        return openGdalPhotos(files, tiling_, samples_, crs_, 64 << 20);
+        return openGdalPhotos({.files = files, .cacheBytes = 64 << 20}, tiling_, samples_, crs_);
     }
 
     TemporaryDirectory folder_;
@@ -210,8 +210,8 @@ TEST_F(GdalPhotos, WithoutGeoreferenceAreRefusedOverGeoreferencedHeights) {
 }
 
 TEST_F(GdalPhotos, ThatAreMissingAreRefused) {
-    const Refusal refusal =
-        refusalOf([&] { (void)openGdalPhotos({(folder_ / "absent.tif").string()}, tiling_, samples_, crs_, 1 << 20); });
+    const Refusal refusal = refusalOf(
+        [&] { (void)openGdalPhotos({.files = {(folder_ / "absent.tif").string()}}, tiling_, samples_, crs_); });
     EXPECT_EQ(refusal.code, ExitCode::input);
     EXPECT_TRUE(refusal.says("no such file")) << refusal.message;
 }

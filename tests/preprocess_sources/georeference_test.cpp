@@ -51,7 +51,7 @@ class Georeference : public testing::TestWithParam<const char*> {
                          }});
         const auto source = openGdalHeights({.files = {heights}});
         const OpenPhoto openPhoto = [&](const Tiling& tiling, const HeightGridInfo& info) {
-            return openGdalPhotos({photo}, tiling, info.size, info.crsWkt, 64u << 20);
+            return openGdalPhotos({.files = {photo}, .cacheBytes = 64u << 20}, tiling, info.size, info.crsWkt);
         };
         (void)buildDataset(*source, openPhoto, {.out = folder_ / "out", .jobs = 2});
     }
