@@ -37,11 +37,11 @@ EditList EditedGround::near(const TileId& id) const {
 }
 
 void EditedGround::collect(const GroundRect& square, std::span<const TerrainEdit> edits, Bounds& bounds) const {
-    // With a margin as wide as the apron: so squares of all levels nest, and with them their bounds.
     const GroundRect region = widened(square, kHeightApron * bounds.spacing);
     const EditList near = editsNear(edits, region);
     const double side = square.east - square.west;
-    if (near.size() > 1 && side > kLeastSquare * bounds.spacing) {
+    const bool apart = std::ranges::any_of(near, [side](const TerrainEdit& edit) { return reachOf(edit) < side; });
+    if (near.size() > 1 && apart && side > kLeastSquare * bounds.spacing) {
         const double x = square.west + side / 2, y = square.south + side / 2;
         collect({square.west, square.south, x, y}, near, bounds);
         collect({x, square.south, square.east, y}, near, bounds);

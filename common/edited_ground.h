@@ -52,8 +52,9 @@ class EditedGround {
     /// with editBounds' variation over that distance; half a step comes on top. At the finest level only that does. So
     /// a tile is refined until steps of a crater's wall are below the tolerance, or the finest samples are reached.
     ///
-    /// Bounds are taken from squares of the tile, halved until one edit is left or a square has 16 samples a side, so
-    /// that edits add up only where some 20 samples hold both. That costs time in proportion to the edits.
+    /// Bounds are taken from squares of the tile, halved until one edit is left, or all reach as far as the square is
+    /// wide, or it has 16 samples a side, so that edits far from one another do not add up. That costs time in
+    /// proportion to the edits near the tile, a few microseconds for each.
     ///
     /// @param leastStep  metres per code of the tile where that is known
     [[nodiscard]] std::optional<HeightRecord> record(const TileId& id, const HeightRecord& stored,

@@ -90,8 +90,8 @@ class Engine {
 
     /// From the next frame on the ground is edited so, in place of the edits before; the dataset is not touched. Tiles
     /// that the change concerns are made anew from their stored codes, in that frame where main memory holds them;
-    /// until they come, ancestors stand in. Without waiting or starting anew, the pictures are those of an engine that
-    /// began with this list. @param edits  valid()
+    /// until they come, ancestors stand in. When they have come, pictures are those of an engine that began with this
+    /// list. @param edits  valid()
     void setEdits(EditList edits);
     /// The same list with one more at its end.
     void addEdit(TerrainEdit edit);

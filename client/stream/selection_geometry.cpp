@@ -78,8 +78,8 @@ GroundBounds::GroundBounds(const TileTree& tree) : tree_(tree) {
     const Ground ground = groundOf(root->record);
     const double range = ground.high - ground.low;
     // A tile's codes span less than the whole range, and its exponent is the smallest that fits: twice range / 65534 at
-    // most.
-    const double step = std::max(root->metresPerCode, range / 32767);
+    // most; but edits may need larger steps.
+    const double step = std::max({root->metresPerCode, range / 32767, tree.coarsestEditedStep()});
     // Half a step per level for the means' rounding, half for the finest samples', half to spare.
     margin_ = step * (1 + 0.5 * tree.finestHeightLevel());
     floor_ = ground.low - std::max(margin_, 0.02 * range);

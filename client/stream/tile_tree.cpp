@@ -54,12 +54,15 @@ void TileTree::describe(const TileId& id, Heights& tile, const Stored& stored) {
     const auto edited = edits_->record(id, stored.record, stored.metresPerCode);
     if (!edited) return;
     tile.record = *edited;
-    if (stored.metresPerCode > 0) tile.metresPerCode = edits_->stepOf(*edited, stored.metresPerCode);
+    const double step = edits_->stepOf(*edited, stored.metresPerCode);
+    if (stored.metresPerCode > 0) tile.metresPerCode = step;
+    coarsestEditedStep_ = std::max(coarsestEditedStep_, step);
     stored_.insert_or_assign(id, stored);
 }
 
 void TileTree::setEdits(std::shared_ptr<const EditedGround> edits) {
     edits_ = std::move(edits);
+    coarsestEditedStep_ = 0;
     const auto before = std::exchange(stored_, {});
     for (auto& [id, tile] : heights_) {
         const auto edited = before.find(id);

@@ -63,6 +63,8 @@ class TileTree {
     /// What is known of a tile; nullptr when no loaded tile has spoken of it yet.
     [[nodiscard]] const Heights* heights(const TileId& id) const;
     [[nodiscard]] const Imagery* imagery(const TileId& id) const;
+    /// Metres per code of the edited tiles that are known, at most; 0 without edits.
+    [[nodiscard]] double coarsestEditedStep() const { return coarsestEditedStep_; }
     [[nodiscard]] size_t knownTiles() const { return heights_.size() + imagery_.size(); }
 
   private:
@@ -81,7 +83,8 @@ class TileTree {
     std::unordered_map<TileId, Imagery> imagery_;
     std::shared_ptr<const EditedGround> edits_;
     std::unordered_map<TileId, Stored> stored_;  ///< of those in heights_ that edits change
-    size_t keptLast_ = 0;                        ///< known tiles after the last forgetting
+    double coarsestEditedStep_ = 0;
+    size_t keptLast_ = 0;  ///< known tiles after the last forgetting
 };
 
 }  // namespace terray

@@ -193,10 +193,15 @@ TEST(EditedGround, ATreeUnderEditsKnowsTheSameWheneverItLearntOfThem) {
             EXPECT_EQ(tree->heights(id)->record, expected) << id;
             EXPECT_EQ(tree->heights(id)->metresPerCode, from.heights(id)->metresPerCode) << id;
         }
+        if (const auto described = ground->describe(tile)) {
+            EXPECT_GE(later.coarsestEditedStep(), described->encoding.metresPerCode()) << id;
+        }
         EXPECT_EQ(undone.heights(id)->record, tile.record) << id;
         EXPECT_EQ(undone.heights(id)->metresPerCode, tile.encoding.metresPerCode()) << id;
     }
     EXPECT_GT(edited, 5);
+    EXPECT_EQ(later.coarsestEditedStep(), from.coarsestEditedStep());
+    EXPECT_EQ(undone.coarsestEditedStep(), 0);
 }
 
 TEST(EditedGround, NodesAreRefinedForASmallCraterNearTheEyeAndHoldItInTheirBoxes) {
