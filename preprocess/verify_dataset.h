@@ -29,8 +29,8 @@ struct VerifyReport {
 /// and beyond the sources; each cell the mean of those beneath, to the rounding of both; its error e no less than what
 /// the children prove (|h - h_child| - e_child for some cell) and no more than they allow (|h - h_child| + e_child for
 /// every cell). Imagery, each tile: checksum, id, mips, and existence both ways. Whole dataset: counts, extremes,
-/// errors of levels, hole samples, the archives' headers. What the sources held cannot be checked, since they are not
-/// there.
+/// errors of levels, hole samples, the archives' headers, and the text of the metadata, which both archives share. What
+/// the sources held cannot be checked, since they are not there.
 ///
 /// Uses `jobs` threads, five decoded tiles each. Throws Error(dataset) when a directory cannot be read,
 /// Error(interrupted).

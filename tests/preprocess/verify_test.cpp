@@ -238,6 +238,36 @@ TEST_F(Verify, FindsFaultsOfImagery) {
     expectFault("metadata", "counts 14 imagery tiles, the archive has 13");
 }
 
+TEST(VerifyFlips, NoFlippedBitAnywhereInTheTwoArchivesGoesUnseen) {
+    const TemporaryDirectory directory;
+    const std::filesystem::path path = directory / "out";
+    (void)buildTestDataset(GridHeights(makeHills({600, 300}, 8, 5)), path, {},
+                           gridPhoto(Grid<Rgba>({700, 300}, Rgba{90, 120, 40, 255}), 1));
+    const std::atomic<bool> stop = false;
+    const auto isSeen = [&] {
+        try {
+            return !verifyDataset(openDataset(path), 2, stop).faults.empty();
+        } catch (const Error& error) {
+            return error.code() == ExitCode::dataset;
+        }
+    };
+    ASSERT_FALSE(isSeen());
+    std::mt19937_64 random(11);
+    constexpr int kFlips = 200;
+    for (int flip = 0; flip < kFlips; ++flip) {
+        const std::filesystem::path archive = path / (random() % 2 == 0 ? kHeightsFile : kImageryFile);
+        Bytes bytes = readFile(archive);
+        // Every other one before the tiles: header, directory and metadata are a hundredth of the bytes.
+        const uint64_t bits = 8 * (flip % 2 == 0 ? std::min<size_t>(bytes.size(), 1500) : bytes.size());
+        const uint64_t bit = random() % bits;
+        bytes[bit / 8] ^= static_cast<std::byte>(1 << (bit % 8));
+        writeFile(archive, bytes);
+        EXPECT_TRUE(isSeen()) << archive << ", bit " << bit;
+        bytes[bit / 8] ^= static_cast<std::byte>(1 << (bit % 8));
+        writeFile(archive, bytes);
+    }
+}
+
 TEST_F(Verify, RefusesArchivesOfDifferentBuilds) {
     rewriteArchive(heights(), [](Payloads&, std::string& text) {
         Json json = Json::parse(text).value();
