@@ -1,9 +1,11 @@
 #include "client/bench/ray_statistics.h"
 
 #include <algorithm>
-#include <vector>
+#include <span>
+#include <string>
 
 #include "client/render/frame_targets.h"
+#include "common/output_file.h"
 
 namespace terray {
 
@@ -32,6 +34,24 @@ RayStatistics measureRays(const Grid<uint32_t>& steps, const Grid<uint32_t>& nod
     result.stepsMax = *std::ranges::max_element(counts);
     result.stepsMean = static_cast<double>(sum) / static_cast<double>(counts.size());
     return result;
+}
+
+void StepHistogram::add(const Grid<uint32_t>& steps) {
+    for (const uint32_t cell : steps.cells()) {
+        const uint32_t count = cell & kStepCountMask;
+        if (count == 0) continue;
+        if (count >= rays_.size()) rays_.resize(count + 1);
+        ++rays_[count];
+    }
+}
+
+void StepHistogram::write(const std::filesystem::path& path) const {
+    std::string text = "steps,rays\n";
+    for (size_t steps = 0; steps < rays_.size(); ++steps)
+        if (rays_[steps] > 0) text += std::to_string(steps) + ',' + std::to_string(rays_[steps]) + '\n';
+    OutputFile file(path.string() + ".partial");
+    file.write(std::as_bytes(std::span(text)));
+    file.publish(path);
 }
 
 }  // namespace terray

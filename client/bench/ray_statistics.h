@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <vector>
 
 #include "common/grid.h"
 
@@ -22,5 +24,19 @@ struct RayStatistics {
 
 /// @param steps  as FrameTargets::readSteps  @param nodes  as FrameTargets::readNodes, of the same size
 [[nodiscard]] RayStatistics measureRays(const Grid<uint32_t>& steps, const Grid<uint32_t>& nodes);
+
+/// How many rays took how many steps, over any number of pictures. Rays that entered no box are left out.
+class StepHistogram {
+  public:
+    /// @param steps  as FrameTargets::readSteps
+    void add(const Grid<uint32_t>& steps);
+    /// Rays by their number of steps; the last entry is not 0.
+    [[nodiscard]] const std::vector<uint64_t>& rays() const { return rays_; }
+    /// As CSV, a line for each number of steps that a ray took. Throws Error(output).
+    void write(const std::filesystem::path& path) const;
+
+  private:
+    std::vector<uint64_t> rays_;
+};
 
 }  // namespace terray

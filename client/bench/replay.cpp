@@ -42,14 +42,16 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
                      "Flies a flight frame by frame at a fixed rate and writes what each frame cost.");
     line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
-    line.option("--out", options.out, "DIR", "for frames.csv, summary.json, manifest.json and frames/").required();
+    line.option("--out", options.out, "DIR", "for frames.csv, steps.csv, summary.json, manifest.json and frames/")
+        .required();
     line.size("--size", options.width, options.height, "of a frame in pixels (1280x720)");
     line.option("--fps", options.framesPerSecond, "N", "frames to a second of the flight (30)");
     line.flag("--frames", options.pictures, "write each frame as PNG, outside of the times");
     line.flag("--wait-for-tiles", options.waitForTiles,
               "each frame waits until all of its tiles are loaded: the same pictures on every machine");
     line.option("--warm-up", options.warmUpFrames, "N", "draw the first frame so often before the flight (3)");
-    line.flag("--no-statistics", options.noStatistics, "count no rays and steps: their columns stay empty");
+    line.flag("--no-statistics", options.noStatistics,
+              "count no rays and steps: their columns stay empty, steps.csv is not written");
     line.flag("--force", options.force, "replace an earlier run in DIR");
     options.engine.declare(line);
     if (!line.parse(arguments)) return false;
@@ -105,6 +107,7 @@ class Replay {
     }
 
     FrameTable& table() { return table_; }
+    [[nodiscard]] const StepHistogram& steps() const { return steps_; }
 
     /// The launch in use and, where it was chosen by calibration, by how much.
     [[nodiscard]] Json launch() const {
@@ -148,7 +151,11 @@ class Replay {
         pagerBefore_ = frame.report.pager;
         // From here on nothing is timed: reading back stalls the GPU.
         const FrameTargets& targets = engine_.targets();
-        if (!options_.noStatistics) frame.rays = measureRays(targets.readSteps(), targets.readNodes());
+        if (!options_.noStatistics) {
+            const Grid<uint32_t> steps = targets.readSteps();
+            frame.rays = measureRays(steps, targets.readNodes());
+            steps_.add(steps);
+        }
 #if TERRAY_WITH_OUTPUT
         if (options_.pictures) writePng(directory_.frame(index), targets.readSrgb().view());
 #endif
@@ -161,6 +168,7 @@ class Replay {
     ShaderLibrary shaders_;
     Engine engine_;
     FrameTable table_;
+    StepHistogram steps_;
     size_t frames_;
     PagerStatistics pagerAtStart_;
     PagerStatistics pagerBefore_;
@@ -217,6 +225,7 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
     Replay replay(options, *source, flight, directory);
     replay.run();
     replay.table().finish();
+    if (!options.noStatistics) replay.steps().write(directory.steps());
     writeJson(directory.summary(), replay.summary());
     throwIfInterrupted();
     writeJson(directory.manifest(), manifest);

@@ -40,7 +40,7 @@ void removeFolder(const fs::path& folder, std::string_view prefix) {
 
 RunDirectory::RunDirectory(fs::path path, bool withFrames, bool force) : path_(std::move(path)), existed_(false) {
     std::error_code ignored;  // what cannot be looked at is found out by create()
-    for (const fs::path& file : {table(), errors(), summary(), manifest(), frames(), path_ / kMaps})
+    for (const fs::path& file : {table(), steps(), errors(), summary(), manifest(), frames(), path_ / kMaps})
         if (!force && fs::exists(file, ignored))
             throw Error(ExitCode::output, path_.string() + " holds an earlier run, found " + file.string() +
                                               " (give --force to replace it)");
@@ -59,7 +59,7 @@ RunDirectory::~RunDirectory() {
 
 void RunDirectory::removeRun() const {
     std::error_code failure;
-    for (const fs::path& file : {table(), errors(), summary(), manifest()}) fs::remove(file, failure);
+    for (const fs::path& file : {table(), steps(), errors(), summary(), manifest()}) fs::remove(file, failure);
     removeFolder(frames(), "frame_");
     removeFolder(path_ / kMaps, "map_");
 }
@@ -75,6 +75,10 @@ fs::path RunDirectory::errors() const {
 fs::path RunDirectory::maps() const {
     create(path_ / kMaps);
     return path_ / kMaps;
+}
+
+fs::path RunDirectory::steps() const {
+    return path_ / "steps.csv";
 }
 
 fs::path RunDirectory::summary() const {

@@ -5,7 +5,7 @@
 
 namespace terray {
 
-/// The directory that a run writes into: summary.json and manifest.json, a replay's frames.csv and
+/// The directory that a run writes into: summary.json and manifest.json, a replay's frames.csv, steps.csv and
 /// frames/frame_00000.png, ..., and of a measurement of errors errors.csv and maps/.
 class RunDirectory {
   public:
@@ -25,6 +25,8 @@ class RunDirectory {
     [[nodiscard]] std::filesystem::path errors() const;
     /// Made when it is first asked for; its files begin with map_.
     [[nodiscard]] std::filesystem::path maps() const;
+    /// How many rays took how many steps.
+    [[nodiscard]] std::filesystem::path steps() const;
     [[nodiscard]] std::filesystem::path summary() const;
     [[nodiscard]] std::filesystem::path manifest() const;
     [[nodiscard]] std::filesystem::path frames() const;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <sstream>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -25,6 +26,23 @@ ExitCode refusal(const std::vector<std::string>& arguments) {
         return error.code();
     }
     return ExitCode::ok;
+}
+
+TEST(EngineOptions, TheManifestHoldsEveryOne) {
+    EngineCommandLine options;
+    CommandLine line("test", "");
+    options.declare(line);
+    const Json manifest = options.toJson();
+    std::istringstream help(line.help());
+    int found = 0;
+    for (std::string word; help >> word;) {
+        if (!word.starts_with("--") || word == "--help") continue;
+        const std::string name = word.substr(2);
+        const bool held = manifest.find(name) != nullptr || manifest.find("overlay")->find(name) != nullptr;
+        EXPECT_TRUE(held) << word;
+        ++found;
+    }
+    EXPECT_GT(found, 20);
 }
 
 TEST(EngineOptions, DefaultsAreThoseOfTheLibrary) {

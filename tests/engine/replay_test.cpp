@@ -99,6 +99,26 @@ TEST_F(ReplayTest, WritesALineAFrameUnderTheDocumentedHeader) {
         EXPECT_NE(documentation.find("`" + column + "`"), std::string::npos) << "client/README.md lacks " << column;
 }
 
+TEST_F(ReplayTest, CountsEachMarchedRayOnceInTheHistogramOfSteps) {
+    ASSERT_EQ(replay("run", {"--wait-for-tiles"}), ExitCode::ok);
+    const auto frames = tableOf(own_ / "run" / "frames.csv");
+    const auto steps = tableOf(own_ / "run" / "steps.csv");
+    double rays = 0, most = 0, marched = 0, mostOfFrames = 0;
+    for (size_t n = 0; n < steps.at("steps").size(); ++n) {
+        rays += std::stod(steps.at("rays")[n]);
+        most = std::max(most, std::stod(steps.at("steps")[n]));
+    }
+    for (size_t n = 0; n < 9; ++n) {
+        marched += std::stod(frames.at("rays_marched")[n]);
+        mostOfFrames = std::max(mostOfFrames, std::stod(frames.at("steps_max")[n]));
+    }
+    EXPECT_GT(rays, 0);
+    EXPECT_EQ(rays, marched);
+    EXPECT_EQ(most, mostOfFrames);
+    ASSERT_EQ(replay("run", {"--force", "--no-statistics"}), ExitCode::ok);
+    EXPECT_FALSE(std::filesystem::exists(own_ / "run" / "steps.csv")) << "a histogram of an earlier run";
+}
+
 TEST_F(ReplayTest, TwoRunsDifferOnlyInTimes) {
     ASSERT_EQ(replay("a", {"--wait-for-tiles", "--launch", "raster"}), ExitCode::ok);
     ASSERT_EQ(replay("b", {"--wait-for-tiles", "--launch", "raster"}), ExitCode::ok);
