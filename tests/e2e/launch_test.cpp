@@ -16,9 +16,11 @@ class LaunchTest : public testing::Test {
     void TearDown() override { EXPECT_EQ(context_.takeDebugMessages(), ""); }
 
     /// An engine with one launch. Odd sizes, so that work groups overlap the picture's edge.
-    std::unique_ptr<Engine> engineWith(const TileSource& source, Launch launch, EngineOptions options) {
+    std::unique_ptr<Engine> engineWith(const TileSource& source, Launch launch, EngineOptions options,
+                                       GridSize picture = {157, 93}) {
         options.render.launch = launch;
-        return std::make_unique<Engine>(source, shaders_, options, 157, 93);
+        return std::make_unique<Engine>(source, shaders_, options, static_cast<int>(picture.width),
+                                        static_cast<int>(picture.height));
     }
 
     /// Draws with both and expects the same; returns the pixels that show ground.
@@ -83,6 +85,19 @@ TEST_F(LaunchTest, BothDrawTheSameSkyAndAir) {
         const auto raster = engineWith(dataset.source(), Launch::raster, options);
         const auto compute = engineWith(dataset.source(), Launch::compute, options);
         EXPECT_GT(expectSame(*raster, *compute, cameraAt({3000, 3000, 2500}, 120, -20, 80)), 1000) << sky;
+    }
+}
+
+TEST_F(LaunchTest, PicturesOfSixteenThousandPixelsAreWhole) {
+    // One work group for each pixel would be 16 million in one dimension, 250 times what GL promises, and a dispatch
+    // that is too large draws nothing.
+    const ComputedDataset dataset(1024, 5, 26);
+    for (const GridSize picture : {GridSize{16384, 3}, GridSize{3, 16384}}) {
+        const auto raster = engineWith(dataset.source(), Launch::raster, inspectedOptions(), picture);
+        const auto compute = engineWith(dataset.source(), Launch::compute, inspectedOptions(), picture);
+        const double fieldOfView = picture.width > picture.height ? 0.02 : 100;
+        const Camera camera = cameraAt({2500, -2500, 4000}, 20, -90, fieldOfView);
+        EXPECT_GT(expectSame(*raster, *compute, camera), 3 * 16384 / 2) << picture.width;
     }
 }
 
