@@ -69,7 +69,22 @@ const HeightTile& ColumnOracle::tile(const TileId& id) {
     return found->second;
 }
 
-std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ray) {
+const Grid<uint16_t>& ColumnOracle::blockTops(const HeightTile& tile) {
+    Grid<uint16_t>& tops = blockTops_[tile.id];
+    if (tops.width() > 0) return tops;
+    tops = Grid<uint16_t>({kTileCore / kBlock, kTileCore / kBlock});
+    const auto blockOf = [](int64_t sample) { return std::clamp<int64_t>(sample, 0, kTileCore - 1) / kBlock; };
+    for (int64_t y = 0; y < kTileCore; ++y)
+        for (int64_t x = 0; x < kTileCore; ++x)
+            for (const int64_t row : {y - 1, y + 1})
+                for (const int64_t column : {x - 1, x + 1}) {
+                    uint16_t& top = tops.at(blockOf(column), blockOf(row));
+                    top = std::max(top, tile.codes.at(x + kHeightApron, y + kHeightApron));
+                }
+    return tops;
+}
+
+std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ray, std::optional<double> first) {
     const Tiling& tiling = source_.metadata().tiling;
     const GroundRect ground = tiling.bounds(node.cell);
     const double metresPerT = glm::length(ray.direction);
@@ -81,7 +96,7 @@ std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ra
                      : 0.01 + 0x1p-20 * std::hypot(glm::distance(ray.eye, centreOf(ground)), ground.east - ground.west);
     clip(span, ray.eye.x, ray.direction.x, ground.west - widest, ground.east + widest);
     clip(span, ray.eye.y, ray.direction.y, ground.south - widest, ground.north + widest);
-    if (span.to <= span.from) return {};
+    if (span.to <= span.from) return first;
 
     const HeightTile& tile = this->tile(node.heightTile);
     const GroundRect source = tiling.bounds(node.heightTile);
@@ -103,14 +118,35 @@ std::optional<double> ColumnOracle::meetNode(const DrawNode& node, const Ray& ra
         clipBent(inside, ray.eye.z, ray.direction.z, ray.bend, {ray.floor, tile.encoding.height(code) + change});
         return inside.from <= inside.to ? std::optional(inside.from) : std::nullopt;
     };
+    /// When the ray leaves the block of samples around a cell, if until then it is higher than all that is in the block
+    /// and next to it; else 0. What grows by more than a sample is left to single columns.
+    const Grid<uint16_t>& tops = blockTops(tile);
+    const auto pastBlock = [&](int64_t column, int64_t row, double from) {
+        if (std::min(column, row) < 0 || std::max(column, row) >= kTileCore) return 0.0;
+        Span block{from, span.to};
+        const auto cut = [&](double start, double slope, int64_t sample) {
+            const auto low = static_cast<double>(sample / kBlock * kBlock);
+            clip(block, start, slope, low, low + kBlock);
+        };
+        cut(eye.x, perT.x, column);
+        cut(eye.y, perT.y, row);
+        if (block.to <= from || std::abs(changeAt(block.to)) > spacing) return 0.0;
+        const auto height = [&](double t) { return ray.eye.z + t * (ray.direction.z + t * ray.bend); };
+        const double sag = ray.bend * (block.to - from) * (block.to - from) / 4;
+        const double top = tile.encoding.height(tops.at(column / kBlock, row / kBlock)) + changeAt(block.to);
+        return std::min(height(from), height(block.to)) - sag > top ? block.to : 0.0;
+    };
     const int64_t beside = ray.sign > 0 ? 1 : 0;  // grown columns reach into their neighbours
-    std::optional<double> first;
     // A column beside the ray's cell may be met later than one in the next cell, so go on until past what was found.
     for (double t = span.from; t < std::min(span.to, first.value_or(span.to));) {
         // The cell around a point just ahead, and the time at which the ray leaves that cell.
         const double ahead = t + 1e-9 * std::max(1.0, t) + 1e-7 * spacing / metresPerT;
         const auto column = static_cast<int64_t>(std::floor(eye.x + ahead * perT.x));
         const auto row = static_cast<int64_t>(std::floor(eye.y + ahead * perT.y));
+        if (const double past = pastBlock(column, row, t); past > ahead) {
+            t = past;
+            continue;
+        }
         for (int64_t y = row - beside; y <= row + beside; ++y)
             for (int64_t x = column - beside; x <= column + beside; ++x) {
                 const auto met = meetColumn(x, y, changeAt(ahead));
@@ -131,10 +167,7 @@ std::optional<double> ColumnOracle::meet(const std::vector<DrawNode>& nodes, con
                   .bend = heights.earth ? heights.earth->drop(direction.x, direction.y) : 0,
                   .sign = columns == Columns::shrunk ? -1.0 : 1.0,
                   .floor = floor};
-    for (const DrawNode& node : nodes) {
-        const auto t = meetNode(node, ray);
-        if (t && (!first || *t < *first)) first = t;
-    }
+    for (const DrawNode& node : nodes) first = meetNode(node, ray, first);
     return first;
 }
 

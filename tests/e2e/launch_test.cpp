@@ -39,7 +39,7 @@ class LaunchTest : public testing::Test {
                 moved += hits.at(x, y) != others.at(x, y);
             }
         EXPECT_EQ(moved, 0) << "hits differ";
-        EXPECT_TRUE(raster.targets().readSrgb() == compute.targets().readSrgb());
+        expectSameColours(raster.targets(), compute.targets());
         EXPECT_TRUE(raster.targets().readNormals() == compute.targets().readNormals());
         EXPECT_EQ(raysOutOfSteps(raster.targets()), 0);
         EXPECT_EQ(raysOutOfSteps(compute.targets()), 0);

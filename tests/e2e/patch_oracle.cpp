@@ -28,16 +28,8 @@ struct PatchOracle::Ray {
     [[nodiscard]] double doubt(double t) const { return 0.01 + 0x1p-20 * t * metresPerT; }
 };
 
-namespace {
-
-struct Times {
-    double from = 0;
-    double to = 0;
-    [[nodiscard]] bool empty() const { return !(from <= to); }
-};
-
 /// When a point that starts at `start` and moves by `speed` is between low and high.
-Times between(double start, double speed, double low, double high) {
+PatchOracle::Times PatchOracle::between(double start, double speed, double low, double high) {
     constexpr double kEver = 1e300;
     if (low > high) return {1, 0};
     if (speed == 0) return start >= low && start <= high ? Times{-kEver, kEver} : Times{1, 0};
@@ -45,9 +37,11 @@ Times between(double start, double speed, double low, double high) {
     return {std::min(a, b), std::max(a, b)};
 }
 
-Times both(const Times& a, const Times& b) {
+PatchOracle::Times PatchOracle::both(const Times& a, const Times& b) {
     return {std::max(a.from, b.from), std::min(a.to, b.to)};
 }
+
+namespace {
 
 /// A place in half samples: quarters of patches are squares of one.
 struct Place {
@@ -99,15 +93,15 @@ bool inside(const glm::dvec2& low, const glm::dvec2& high, const Place& place) {
            0.5 * place.y < high.y;
 }
 
-/// The first time within `times` at which a quadratic function of time is at or below 0, by its sign at the ends and at
-/// its turning point, and by halving.
+/// The first time from `from` to `to` at which a quadratic function of time is at or below 0, by its sign at the ends
+/// and at its turning point, and by halving.
 template <class Function>
-std::optional<double> firstBelow(const Function& clearance, Times times, double turning) {
-    if (clearance(times.from) <= 0) return times.from;
-    double below = times.to;
-    if (turning > times.from && turning < times.to && clearance(turning) <= 0) below = turning;
+std::optional<double> firstBelow(const Function& clearance, double from, double to, double turning) {
+    if (clearance(from) <= 0) return from;
+    double below = to;
+    if (turning > from && turning < to && clearance(turning) <= 0) below = turning;
     if (clearance(below) > 0) return {};
-    double above = times.from;
+    double above = from;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (above + below);
         (clearance(middle) <= 0 ? below : above) = middle;
@@ -116,6 +110,13 @@ std::optional<double> firstBelow(const Function& clearance, Times times, double 
 }
 
 }  // namespace
+
+/// Whether the ray stays higher than ground that nowhere exceeds a code, however much that is grown.
+bool PatchOracle::clears(const Ray& ray, const Times& span, const NodeGround& node, uint16_t top) {
+    const double most = ray.doubt(span.to) * (2 + 2 * node.relief / node.spacing);
+    const double sag = ray.bend * (span.to - span.from) * (span.to - span.from) / 4;
+    return std::min(ray.height(span.from), ray.height(span.to)) - sag > node.tile->encoding.height(top) + most;
+}
 
 /// One quarter of a patch of a node.
 struct PatchOracle::Quarter {
@@ -134,10 +135,7 @@ struct PatchOracle::Quarter {
 
     /// Whether the ray is higher than anything around this quarter's sample: a quick answer for most quarters.
     [[nodiscard]] bool passesAbove(const Ray& ray, const Times& span) const {
-        const double most = ray.doubt(span.to) * (2 + 2 * node.relief / node.spacing);
-        const double sag = ray.bend * (span.to - span.from) * (span.to - span.from) / 4;
-        const double top = node.tile->encoding.height(node.tops->at(place.sample().x, place.sample().y));
-        return std::min(ray.height(span.from), ray.height(span.to)) - sag > top + most;
+        return clears(ray, span, node, node.tops->samples.at(place.sample().x, place.sample().y));
     }
     [[nodiscard]] std::optional<double> meet(const Ray& ray, const Times& span) const {
         if (!solid(place) || passesAbove(ray, span)) return {};
@@ -166,21 +164,51 @@ struct PatchOracle::Quarter {
         const double width = std::max(times.to - times.from, 1e-9);
         const double slope = (clearance(times.from + width) - clearance(times.from)) / width - 0.5 * curvature * width;
         const double turning = curvature == 0 ? times.to : times.from - slope / curvature;
-        const auto met = firstBelow(clearance, times, turning);
+        const auto met = firstBelow(clearance, times.from, times.to, turning);
         return met && ray.height(*met) >= ray.floor ? met : std::nullopt;
     }
 };
 
-const Grid<uint16_t>& PatchOracle::topsOf(const HeightTile& tile) {
-    Grid<uint16_t>& tops = tops_[tile.id];
-    if (tops.width() > 0) return tops;
-    tops = Grid<uint16_t>({kTileCore, kTileCore});
+const PatchOracle::Tops& PatchOracle::topsOf(const HeightTile& tile) {
+    Tops& tops = tops_[tile.id];
+    if (tops.samples.width() > 0) return tops;
+    tops.samples = Grid<uint16_t>({kTileCore, kTileCore});
+    tops.blocks = Grid<uint16_t>({kTileCore / kBlock, kTileCore / kBlock});
     for (int y = 0; y < kTileCore; ++y)
         for (int x = 0; x < kTileCore; ++x)
             for (int row = y - 1; row <= y + 1; ++row)
                 for (int column = x - 1; column <= x + 1; ++column)
-                    tops.at(x, y) = std::max(tops.at(x, y), codeAt(tile, {column, row}));
+                    tops.samples.at(x, y) = std::max(tops.samples.at(x, y), codeAt(tile, {column, row}));
+    const auto blockOf = [](int sample) { return std::clamp(sample, 0, kTileCore - 1) / kBlock; };
+    for (int y = 0; y < kTileCore; ++y)
+        for (int x = 0; x < kTileCore; ++x)
+            for (const int row : {y - 1, y + 1})
+                for (const int column : {x - 1, x + 1}) {
+                    uint16_t& top = tops.blocks.at(blockOf(column), blockOf(row));
+                    top = std::max(top, tops.samples.at(x, y));
+                }
     return tops;
+}
+
+/// When the ray leaves the block of samples that it is in at the times' start, if it is higher than anything around
+/// that block until then.
+std::optional<double> PatchOracle::pastBlock(const NodeGround& node, const Ray& ray, const Times& times) {
+    const double nudge = 1e-7 / std::max({std::abs(ray.perT.x), std::abs(ray.perT.y), 1e-12});
+    const glm::dvec2 here = ray.eye + (times.from + nudge) * ray.perT;
+    const glm::dvec2 block = glm::floor(here / static_cast<double>(kBlock));
+    const double blocks = kTileCore / kBlock;
+    if (block.x < 0 || block.y < 0 || block.x >= blocks || block.y >= blocks) return {};
+    double leave = times.to;
+    for (int axis = 0; axis < 2; ++axis) {
+        if (ray.perT[axis] == 0) continue;
+        const double edge = kBlock * (block[axis] + (ray.perT[axis] > 0 ? 1 : 0));
+        leave = std::min(leave, (edge - ray.eye[axis]) / ray.perT[axis]);
+    }
+    // Grown ground reaches less than a sample into the block, or this is no shortcut.
+    if (leave <= times.from + nudge || ray.doubt(leave) > 0.5 * node.spacing) return {};
+    const uint16_t top = node.tops->blocks.at(static_cast<int64_t>(block.x), static_cast<int64_t>(block.y));
+    if (!clears(ray, {times.from, leave}, node, top)) return {};
+    return leave < times.to ? leave : std::nextafter(leave, 1e300);
 }
 
 const PatchOracle::NodeGround& PatchOracle::groundOf(const DrawNode& node) {
@@ -207,7 +235,7 @@ const PatchOracle::NodeGround& PatchOracle::groundOf(const DrawNode& node) {
     return ground;
 }
 
-std::optional<double> PatchOracle::meetNode(const NodeGround& node, const Ray& ray) {
+std::optional<double> PatchOracle::meetNode(const NodeGround& node, const Ray& ray, std::optional<double> first) {
     const double reach =
         std::max(0.0, ray.sign) * (0.01 / node.spacing + 0x1p-20 * (glm::distance(ray.eye, node.low) + kTileCore));
     Times span = both({0, 1e300}, both(between(ray.eye.x, ray.perT.x, node.low.x - reach, node.high.x + reach),
@@ -218,12 +246,15 @@ std::optional<double> PatchOracle::meetNode(const NodeGround& node, const Ray& r
         const double change = (0.01 + 0x1p-20 * farthest) * (1 + 2 * node.relief / node.spacing);
         span = both(span, between(ray.eyeZ, ray.zPerT, ray.floor, node.top + change));
     }
-    if (span.empty() || span.to > 1e200) return {};
+    if (span.empty() || span.to > 1e200) return first;
 
-    std::optional<double> first;
     const double perHalfSample = 0.5 / std::max({std::abs(ray.perT.x), std::abs(ray.perT.y), 1e-12});
     // A quarter beside the ray may be met later than one farther on, so go on until past what was found.
     for (double t = span.from; t <= std::min(span.to, first.value_or(span.to));) {
+        if (const auto past = pastBlock(node, ray, {t, span.to})) {
+            t = *past;
+            continue;
+        }
         // The ray's part up to where it leaves the half sample it is in, or a little farther.
         const glm::dvec2 here = 2.0 * (ray.eye + (t + 1e-7 * perHalfSample) * ray.perT);
         double leave = t + perHalfSample;
@@ -268,8 +299,7 @@ std::optional<double> PatchOracle::meet(const std::vector<DrawNode>& nodes, cons
                       .metresPerT = glm::length(direction),
                       .sign = ground == ColumnOracle::Columns::shrunk ? -1.0 : 1.0,
                       .floor = floor};
-        const auto t = meetNode(of, ray);
-        if (t && (!first || *t < *first)) first = t;
+        first = meetNode(of, ray, first);
     }
     const auto column = columns_.meet(asColumns, view, direction, ground, floor);
     return column && (!first || *column < *first) ? column : first;

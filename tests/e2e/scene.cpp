@@ -141,6 +141,26 @@ Camera cameraAt(glm::dvec3 position, double headingDegrees, double pitchDegrees,
             .verticalFov = radiansFromDegrees(fovDegrees)};
 }
 
+ColourDifference colourDifference(const Grid<Rgba>& a, const Grid<Rgba>& b) {
+    TERRAY_CHECK(a.size() == b.size());
+    ColourDifference difference;
+    for (size_t n = 0; n < a.cells().size(); ++n) {
+        int most = 0;
+        for (size_t channel = 0; channel < 3; ++channel)
+            most = std::max(most, std::abs(int{a.cells()[n][channel]} - int{b.cells()[n][channel]}));
+        difference.byOneStep += most == 1;
+        difference.byMore += most > 1;
+    }
+    return difference;
+}
+
+void expectSameColours(const FrameTargets& one, const FrameTargets& other) {
+    const Grid<Rgba> colours = one.readSrgb();
+    const ColourDifference difference = colourDifference(colours, other.readSrgb());
+    EXPECT_EQ(difference.byMore, 0);
+    EXPECT_LE(difference.byOneStep, colours.size().count() / 1000);
+}
+
 int64_t raysOutOfSteps(const FrameTargets& targets) {
     int64_t count = 0;
     const Grid<uint32_t> steps = targets.readSteps();

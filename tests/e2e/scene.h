@@ -54,6 +54,19 @@ class ComputedDataset {
 /// A camera from degrees.
 [[nodiscard]] Camera cameraAt(glm::dvec3 position, double headingDegrees, double pitchDegrees, double fovDegrees = 45);
 
+/// Pixels of two pictures of one size that differ, by one of 255 steps in a channel or by more.
+struct ColourDifference {
+    int64_t byOneStep = 0;
+    int64_t byMore = 0;
+};
+[[nodiscard]] ColourDifference colourDifference(const Grid<Rgba>& a, const Grid<Rgba>& b);
+
+/// Expects two launches' pictures to be the same. Node and hit of a pixel are, bit by bit; a colour has gone through
+/// powers and exponentials in two programs that the driver's compiler need not round alike, and where its last place
+/// decides the rounding to 8 bits, the byte is another: a value has about 24 bits, so once in 2^16 values, here
+/// granted to one pixel in 1000.
+void expectSameColours(const FrameTargets& one, const FrameTargets& other);
+
 /// Pixels of the last frame whose ray ran out of steps.
 [[nodiscard]] int64_t raysOutOfSteps(const FrameTargets& targets);
 
