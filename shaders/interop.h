@@ -22,6 +22,7 @@ using dvec4 = glm::dvec4;
 #define TERRAY_UNIT_SKY 5      // sampler2D: the sky by direction, see SkyTable
 #define TERRAY_UNIT_AIR 6      // sampler3D: the air by direction and distance, see SkyTable
 #define TERRAY_UNIT_SUN_LIGHT 7  // sampler2D: part of the sun that the ground sees
+#define TERRAY_UNIT_STEPS 8    // usampler2D: steps of each pixel's ray, or of its shadow rays
 #define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
 #define TERRAY_IMAGE_HIT 1     // image2D rgba32f, compute launch
 #define TERRAY_IMAGE_NODE 2    // uimage2D r32ui, compute launch
@@ -36,6 +37,7 @@ using dvec4 = glm::dvec4;
 #define TERRAY_BUFFER_SKY 6    // SSBO: SkyParameters
 #define TERRAY_BUFFER_SHADOW_CELLS 4  // SSBO: ShadowCell[]
 #define TERRAY_BUFFER_SHADOW 5        // UBO: ShadowParameters
+#define TERRAY_BUFFER_SHADING 7       // UBO: ShadingParameters
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
 #define TERRAY_UNIFORM_ORIGIN 0  // locations of overlays, see overlay.vert and overlay.frag
 #define TERRAY_UNIFORM_GROWTH 1
@@ -45,9 +47,16 @@ using dvec4 = glm::dvec4;
 #define TERRAY_GROUP_SIDE 8
 #define TERRAY_BIN_SIDE 32
 
-// NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear.
+// NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear. For shading
+// modes: whether ancestors stand in for tiles that are not resident, and level and hash of the height source; the two lowest
+// bits of the hash are the tile's quadrant, so that neighbours differ.
 #define TERRAY_START_LEVEL_MASK 0xffu
 #define TERRAY_BILINEAR_BIT 0x100u
+#define TERRAY_HEIGHT_STAND_IN_BIT 0x200u
+#define TERRAY_PHOTO_STAND_IN_BIT 0x400u
+#define TERRAY_TILE_LEVEL_SHIFT 11
+#define TERRAY_TILE_LEVEL_MASK 0x1fu
+#define TERRAY_TILE_HASH_SHIFT 16
 
 // Within the programs that make the sky (SkyTable): tables of the air, and SkyInput, UBO.
 #define TERRAY_SKY_UNIT_TRANSMITTANCE 0
@@ -81,7 +90,7 @@ struct NodeParameters {
     vec4 boxMin;   // xyz: the cell's box in the tile frame; w: curved earth: what the seen box needs more, metres down
     vec4 boxMax;   // likewise; w: metres up
     vec4 photo;    // xy: offset, z: scale from tile-frame texels to texels of the photo tile's core
-    uvec4 source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: start level, surface
+    uvec4 source;  // x: height slot, y: photo slot or TERRAY_NO_SLOT, z: level of the cell, w: see above
 };
 
 // One frame.
@@ -126,6 +135,11 @@ struct ShadowParameters {
     vec4 sun;    // x: tangent of half the sun's angular diameter; y: rays for each pixel
 };
 
+// What shading modes measure by.
+struct ShadingParameters {
+    vec4 heights;  // x: lowest, y: highest of the dataset, z: between contour lines, metres; w: tolerance of errors, pixels
+};
+
 // In double, so that a sample's height depends on its place in the dataset and not on the tile that holds it.
 #if defined(__cplusplus) || defined(TERRAY_EDITS)
 // One edit, see common/terrain_edit.h.
@@ -145,6 +159,7 @@ struct EditedTileParameters {
 #ifdef __cplusplus
 static_assert(sizeof(EditParameters) == 2 * 32);
 static_assert(sizeof(EditedTileParameters) == 3 * 32);
+static_assert(sizeof(ShadingParameters) == 16);
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);

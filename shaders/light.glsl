@@ -1,4 +1,4 @@
-// light.glsl: sun and sky on matt ground; linear.
+// light.glsl: sun and sky on matt ground; linear. With TERRAY_UNLIT colours are shown as they are.
 // With TERRAY_SKY both follow the sun's elevation and the height of the ground: redder and dimmer while it sinks, a while
 // longer on the summits.
 #ifndef TERRAY_LIGHT
@@ -27,8 +27,12 @@ Light lightAt(float height) { return Light(kSunLight, kSkyLight); }
 #endif
 
 // sunPart: of the sun that is seen, 0 .. 1. Sky light falls off to half on a vertical wall, which sees half of the sky.
+#if TERRAY_UNLIT
+vec3 lit(vec3 colour, vec3 normal, vec3 sun, Light light, float sunPart) { return colour; }
+#else
 vec3 lit(vec3 colour, vec3 normal, vec3 sun, Light light, float sunPart) {
     return colour * (light.sun * (sunPart * max(dot(normal, sun), 0.0)) + light.sky * (0.5 + 0.5 * normal.z));
 }
+#endif
 
 #endif

@@ -44,6 +44,11 @@ vec3 seenCorner(NodeParameters node, vec3 fromEye, float up) { return fromEye; }
 vec2 seenSlope(NodeParameters node, vec2 texel, vec2 slope) { return slope; }
 #endif
 
+// A height of the dataset, metres, not exaggerated. code: as a height of the tile frame.
+float heightOfCode(NodeParameters node, float code) {
+    return frame.air.y + (code - node.eye.z) * (node.right.w * frame.air.z);
+}
+
 // Where a ray is at view depth t: tile frame.
 vec3 rayPoint(NodeParameters node, vec3 direction, float t) {
     vec3 point = node.eye.xyz + t * direction;

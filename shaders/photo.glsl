@@ -5,7 +5,7 @@
 #include "nodes.glsl"
 
 #if TERRAY_IMAGERY
-#include "math/footprint.glsl"
+#include "pixel_footprint.glsl"
 
 layout(binding = TERRAY_UNIT_PHOTO) uniform sampler2DArray photos;
 
@@ -35,29 +35,16 @@ vec3 filteredPhoto(vec3 place, vec2 alongX, vec2 alongY) {
 vec3 filteredPhoto(vec3 place, vec2 alongX, vec2 alongY) { return textureGrad(photos, place, alongX, alongY).rgb; }
 #endif
 
-// slope: gradient of the surface as seen from the eye (seenSlope), codes per texel. t: view depth, metres. position: on the picture, -1 .. 1.
-vec3 groundColour(NodeParameters node, vec2 texel, vec2 slope, float t, vec2 position) {
+// hit: tile frame, and view depth in metres. slope: gradient of the surface, codes per texel. position: on the picture, -1 .. 1.
+vec3 groundColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) {
     if (node.source.y == TERRAY_NO_SLOT) return frame.ground.rgb;
-
-    // The texel vectors (1, 0) and (0, 1), lifted onto the tangent plane, in metres and then in camera axes.
-    vec3 east = vec3(node.eye.w, 0.0, slope.x * node.right.w);
-    vec3 south = vec3(0.0, -node.eye.w, slope.y * node.right.w);
-    vec2 halfPicture = vec2(length(frame.right.xyz), length(frame.up.xyz));
-    vec3 right = frame.right.xyz / halfPicture.x;
-    vec3 up = frame.up.xyz / halfPicture.y;
-    vec3 eastView = vec3(dot(east, right), dot(east, up), dot(east, frame.forward.xyz));
-    vec3 southView = vec3(dot(south, right), dot(south, up), dot(south, frame.forward.xyz));
-    float focal = 0.5 * frame.up.w / halfPicture.y;
-    vec2 raySlope = position * halfPicture;
-
-    Footprint pixel = pixelFootprint(projected(eastView, raySlope, t, focal), projected(southView, raySlope, t, focal),
-                                     kLongestFootprint / node.photo.z);
-    vec2 uv = (node.photo.xy + node.photo.z * texel + kPhotoGutter) / kPhotoSide;
+    Footprint pixel = footprintAt(node, hit, slope, position, kLongestFootprint / node.photo.z);
+    vec2 uv = (node.photo.xy + node.photo.z * hit.xy + kPhotoGutter) / kPhotoSide;
     float perTexel = node.photo.z / kPhotoSide;
     return filteredPhoto(vec3(uv, float(node.source.y)), pixel.alongX * perTexel, pixel.alongY * perTexel);
 }
 #else
-vec3 groundColour(NodeParameters node, vec2 texel, vec2 slope, float t, vec2 position) { return frame.ground.rgb; }
+vec3 groundColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) { return frame.ground.rgb; }
 #endif
 
 #endif

@@ -1,14 +1,18 @@
-// resolve.glsl: from a pixel's hit to its colour: slope, photo, light, air, sky. The same for the raster and the compute launch.
+// resolve.glsl: from a pixel's hit to its colour: slope, photo or shading mode, light, air, sky. The same for the raster and the compute launch.
 #ifndef TERRAY_RESOLVE
 #define TERRAY_RESOLVE
 #include "air.glsl"
 #include "light.glsl"
 #include "nodes.glsl"
-#include "photo.glsl"
 #include "sky.glsl"
 #include "srgb.glsl"
 #include "sun_light.glsl"
 #include "surface.glsl"
+#if TERRAY_SHADING
+#include "shading.glsl"
+#else
+#include "photo.glsl"
+#endif
 
 layout(binding = TERRAY_UNIT_HIT) uniform sampler2D hits;
 layout(binding = TERRAY_UNIT_NODE) uniform usampler2D hitNodes;
@@ -32,11 +36,14 @@ Resolved resolvePixel(ivec2 pixel) {
         vec2 slope = smoothGradient(hit.xy, node.source.x, hit.z);
         vec2 rise = slope * (node.right.w / node.eye.w);  // metres per metre to the east and to the south
         resolved.normal = normalize(vec3(-rise.x, rise.y, 1.0));
-        vec3 ground = groundColour(node, hit.xy, seenSlope(node, hit.xy, slope), hit.w, position);
-        float height = frame.air.y + (hit.z - node.eye.z) * (node.right.w * frame.air.z);
+        vec3 ground = groundColour(node, hit, slope, position);
+        float height = heightOfCode(node, hit.z);
         vec3 shaded = lit(ground, resolved.normal, frame.sun.xyz, lightAt(height), sunLightAt(pixel));
         resolved.colour = throughAir(shaded, direction, hit.w * length(ray), height);
     }
+#if TERRAY_SHADE_STEPS || TERRAY_SHADE_SHADOW_STEPS
+    resolved.colour = stepColour(pixel);
+#endif
     resolved.colour = storedColour(resolved.colour, pixel);
     return resolved;
 }

@@ -68,6 +68,9 @@ EngineOptions engineOptions(const ReplayOptions& options, const TileSource& sour
     EngineOptions engine = options.engine.options(source.metadata().imageryLevel.has_value());
     options.engine.place(source, engine);
     engine.features.statistics = !options.noStatistics;
+    const ShadingNeeds needs = needsOf(engine.render.shading.mode);
+    if (options.noStatistics && (needs.steps || needs.shadowSteps))
+        throw Error(ExitCode::usage, "--no-statistics: found a --shading that shows steps, which it leaves uncounted");
     return engine;
 }
 
@@ -122,6 +125,7 @@ class Replay {
         return Json::Object{{"frames", uint64_t{frames_}},
                             {"launch", launch()},
                             {"earth", engine_.earth().description()},
+                            {"shading", description(engine_.shading())},
                             {"wallSeconds", wallSeconds_},
                             {"peakResidentBytes", peakResidentBytes()},
                             {"warmUp", Json::Object{{"frames", options_.warmUpFrames},
@@ -195,6 +199,7 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
         std::printf(" (calibration: raster %.1f ms, compute %.1f ms a frame)", launch.numberAt("rasterMs").value(),
                     launch.numberAt("computeMs").value());
     std::printf("\nearth: %s\n", replay.summary().stringAt("earth").value().c_str());
+    std::printf("shading: %s\n", replay.summary().stringAt("shading").value().c_str());
     if (statistics)
         std::printf("steps a ray: mean %.1f, at most %.0f; rays out of steps: %.0f\n", table.median("steps_mean"),
                     table.max("steps_max"), table.sum("rays_out_of_steps"));

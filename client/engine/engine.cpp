@@ -32,12 +32,29 @@ double millisecondsSince(Clock::time_point start) {
 }
 
 bool usesImagery(const TileSource& source, const EngineOptions& options) {
-    return options.selection.useImagery && source.metadata().imageryLevel.has_value();
+    return options.selection.useImagery && source.metadata().imageryLevel.has_value() &&
+           needsOf(options.render.shading.mode).photoTiles;
 }
 
-/// The options as this dataset lets them be: imagery is on only when there is some.
+/// What the mode measures by, where the caller has not said: the dataset's heights, and the selection's tolerance.
+void settleShading(ShadingOptions& shading, const DatasetMetadata& metadata, Pixels tolerance) {
+    shading.lowest = Metres(metadata.minHeight);
+    shading.highest = Metres(metadata.maxHeight);
+    if (shading.contourInterval == Metres(0))
+        shading.contourInterval = automaticContourInterval(shading.lowest, shading.highest);
+    shading.tolerance = tolerance;
+}
+
+/// The options as this dataset and this shading let them be: imagery is on only when there is some, and what the
+/// picture does not show is off.
 EngineOptions settled(EngineOptions options, const TileSource& source) {
     options.features.imagery = options.selection.useImagery = usesImagery(source, options);
+    settleShading(options.render.shading, source.metadata(), options.selection.tolerance);
+    const ShadingNeeds needs = needsOf(options.render.shading.mode);
+    options.features.statistics |= needs.steps || needs.shadowSteps;
+    options.render.sky &= needs.sky;
+    if (!needs.light) options.render.visualRange.reset();
+    if (!needs.light && !needs.shadowSteps) options.render.shadows.reset();
     return options;
 }
 
@@ -281,6 +298,10 @@ const EarthModel& Engine::earth() const {
 
 const GpuTiles& Engine::tiles() const {
     return state_->resident.gpu();
+}
+
+const ShadingOptions& Engine::shading() const {
+    return state_->options.render.shading;
 }
 
 const std::optional<TerrainRenderer::Calibration>& Engine::calibration() const {

@@ -103,6 +103,8 @@ class Engine {
     [[nodiscard]] const GpuTiles& tiles() const;
     /// Over what the dataset is drawn: decided at construction, for pictures of 45 degrees.
     [[nodiscard]] const EarthModel& earth() const;
+    /// What the ground shows, with what was settled from the dataset: heights, contour interval, tolerance.
+    [[nodiscard]] const ShadingOptions& shading() const;
     /// How the launch was chosen; none unless Launch::automatic has drawn a frame.
     [[nodiscard]] const std::optional<TerrainRenderer::Calibration>& calibration() const;
 

@@ -91,6 +91,15 @@ Surface surfaceNamed(const std::string& name) {
     refuse("--surface", name, "auto, columns or bilinear");
 }
 
+Shading shadingNamed(const std::string& name) {
+    std::string expected;
+    for (const ShadingMode& mode : kShadingModes) {
+        if (mode.name == name) return mode.shading;
+        expected += (expected.empty() ? "one of " : ", ") + std::string(mode.name);
+    }
+    refuse("--shading", name, expected);
+}
+
 EarthShape earthShapeNamed(const std::string& name) {
     if (name == "auto") return EarthShape::automatic;
     if (name == "flat") return EarthShape::flat;
@@ -136,6 +145,11 @@ void EngineCommandLine::declare(CommandLine& line) {
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
     line.option("--shadow-rays", shadowRays_, "N", "of each pixel when the sun has a diameter, 1 to 64 (8)");
     line.option("--edits", edits_, "FILE.json", "craters and brush strokes on the ground; the dataset stays as it is");
+    std::string modes;
+    for (const ShadingMode& mode : kShadingModes) modes += (modes.empty() ? "" : "|") + std::string(mode.name);
+    line.option("--shading", shading_, "MODE", "what the ground shows: " + modes + " (photo)");
+    line.option("--contour-interval", contourInterval_, "METRES",
+                "between contour lines, 0.01 to 10000 (1, 2 or 5 times a power of ten, for at least 20 lines)");
     overlay_.declare(line);
     line.option("--shaders", shaders_, "DIR", "take shader sources from here before those built in");
     line.flag("--signal-sky", signalSky_, "magenta instead of sky, to find pixels without ground");
@@ -158,9 +172,10 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
 
     EngineOptions options;
+    options.render.shading = shading();
     options.selection.tolerance = Pixels(tolerance_);
     options.selection.imageryTolerance = Pixels(imageryTolerance_);
-    options.selection.useImagery = datasetHasImagery && !noImagery_;
+    options.selection.useImagery = datasetHasImagery && !noImagery_ && needsOf(options.render.shading.mode).photoTiles;
     options.render.sunDirection = sunDirection(sun_);
     if (!sunTime_.empty()) options.sunTime = sunTime(sunTime_, sunGiven_);
     options.render.sky = sky_ == "physical";
@@ -184,6 +199,20 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.features.signalSky = signalSky_;
     options.exaggeration = exaggeration_;
     return options;
+}
+
+ShadingOptions EngineCommandLine::shading() const {
+    ShadingOptions shading{.mode = shadingNamed(shading_)};
+    if (shading.mode == Shading::shadowSteps && shadows_ != "on")
+        throw Error(ExitCode::usage, "--shading shadow-steps: found no shadow rays to count, expected --shadows on");
+    if (contourInterval_ && shading.mode != Shading::contours)
+        throw Error(ExitCode::usage,
+                    "--contour-interval: found --shading " + shading_ + ", expected --shading contours");
+    if (contourInterval_) {
+        requireRange("--contour-interval", *contourInterval_, 0.01, 1e4);
+        shading.contourInterval = Metres(*contourInterval_);
+    }
+    return shading;
 }
 
 Json EngineCommandLine::toJson() const {
@@ -211,6 +240,8 @@ Json EngineCommandLine::toJson() const {
                         {"earth", earth_},
                         {"refraction", refraction_},
                         {"edits", edits_.empty() ? Json() : Json(edits_)},
+                        {"shading", shading_},
+                        {"contour-interval", contourInterval_ ? Json(*contourInterval_) : Json()},
                         {"overlay", overlay_.toJson()},
                         {"shaders", shaders_.empty() ? Json() : Json(shaders_)},
                         {"signal-sky", signalSky_}};

@@ -35,6 +35,8 @@ class EngineCommandLine {
     [[nodiscard]] ShaderLibrary shaders() const;
 
   private:
+    [[nodiscard]] ShadingOptions shading() const;
+
     OverlayCommandLine overlay_;
     std::string edits_;
     double tolerance_ = SelectionOptions().tolerance.value();
@@ -61,6 +63,8 @@ class EngineCommandLine {
     std::string shadows_ = "off";
     double sunDiameter_ = 0;
     int64_t shadowRays_ = ShadowOptions().rays;
+    std::string shading_ = "photo";
+    std::optional<double> contourInterval_;
     std::string shaders_;
     bool signalSky_ = false;
 };
@@ -81,6 +85,9 @@ class EngineCommandLine {
 
 /// The shape of the earth that "auto", "flat" or "curved" names. Throws Error(usage) on anything else.
 [[nodiscard]] EarthShape earthShapeNamed(const std::string& name);
+
+/// The mode of kShadingModes that has this name. Throws Error(usage) on anything else.
+[[nodiscard]] Shading shadingNamed(const std::string& name);
 
 /// The surface that "auto", "columns" or "bilinear" names. Throws Error(usage) on anything else.
 [[nodiscard]] Surface surfaceNamed(const std::string& name);

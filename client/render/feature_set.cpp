@@ -7,15 +7,18 @@ FeatureSet FeatureSet::marching() const {
 }
 
 FeatureSet FeatureSet::resolving() const {
-    return {.imagery = imagery,
+    const ShadingNeeds needs = needsOf(shading);
+    const bool photo = imagery && needs.photo;
+    return {.imagery = photo,
             .normals = normals,
-            .signalSky = signalSky,
+            .signalSky = signalSky && needs.sky,
             .linearColour = linearColour,
-            .photoProbes = imagery && photoProbes,
-            .curved = imagery && curved,
-            .sky = sky,
-            .air = air,
-            .shadows = shadows};
+            .photoProbes = photo && photoProbes,
+            .curved = curved && (photo || needs.footprint),
+            .sky = sky && needs.sky,
+            .air = air && needs.light,
+            .shadows = shadows && (needs.light || needs.shadowSteps),
+            .shading = shading == Shading::light ? Shading::photo : shading};
 }
 
 FeatureSet FeatureSet::shadowing() const {
@@ -28,7 +31,7 @@ FeatureSet FeatureSet::overlaying() const {
 
 ShaderDefines FeatureSet::defines() const {
     const auto digit = [](bool on) { return on ? "1" : "0"; };
-    return {
+    ShaderDefines defines = {
         {"TERRAY_IMAGERY", digit(imagery)},
         {"TERRAY_STATISTICS", digit(statistics)},
         {"TERRAY_NORMALS", digit(normals)},
@@ -43,6 +46,15 @@ ShaderDefines FeatureSet::defines() const {
         {"TERRAY_SOFT_SUN", digit(softSun)},
         {"TERRAY_SRGB_COLOUR", digit(!linearColour)},
     };
+    bool ownGround = false;
+    for (const ShadingMode& mode : kShadingModes) {
+        if (mode.define.empty()) continue;
+        defines.emplace(mode.define, digit(mode.shading == shading));
+        ownGround |= mode.shading == shading;
+    }
+    defines.emplace("TERRAY_SHADING", digit(ownGround));
+    defines.emplace("TERRAY_UNLIT", digit(!needsOf(shading).light));
+    return defines;
 }
 
 }  // namespace terray

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "client/render/shader_library.h"
+#include "client/render/shading.h"
 
 namespace terray {
 
@@ -22,6 +23,9 @@ struct FeatureSet {
     bool air = false;      ///< TERRAY_AIR: aerial perspective
     bool shadows = false;  ///< TERRAY_SHADOWS: a pass of rays to the sun, whose answer the resolve pass reads
     bool softSun = false;  ///< TERRAY_SOFT_SUN: several of them for each pixel, over the sun's disc
+    /// TERRAY_SHADING and one of TERRAY_SHADE_...: what the ground shows in place of its photo. Photo and light have
+    /// neither: light is the photo's program without imagery.
+    Shading shading = Shading::photo;
 
     auto operator<=>(const FeatureSet&) const = default;
 

@@ -11,6 +11,14 @@
 namespace terray {
 namespace {
 
+/// What shading modes tell of a node: see TERRAY_HEIGHT_STAND_IN_BIT and below in shaders/interop.h.
+uint32_t shadingBits(const DrawNode& node) {
+    const TileId& tile = node.heightTile;
+    const auto hash = static_cast<uint32_t>(std::hash<TileId>()(tile)) << 2 | tile.quadrant();
+    return (node.heightsExact ? 0 : TERRAY_HEIGHT_STAND_IN_BIT) | (node.imageryExact ? 0 : TERRAY_PHOTO_STAND_IN_BIT) |
+           tile.level << TERRAY_TILE_LEVEL_SHIFT | hash << TERRAY_TILE_HASH_SHIFT;
+}
+
 glm::vec4 withW(const glm::dvec3& xyz, double w) {
     return glm::vec4(glm::vec3(xyz), static_cast<float>(w));
 }
@@ -154,7 +162,7 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     const int leaf = source.bilinear ? 1 : 0;
     const auto start = static_cast<uint32_t>(source.pyramid ? std::max(8 - below, leaf) : leaf);
     out.source = {heights.slot, node.imageryTile ? source.photoSlot : TERRAY_NO_SLOT, node.cell.level,
-                  start | (source.bilinear ? TERRAY_BILINEAR_BIT : 0)};
+                  start | (source.bilinear ? TERRAY_BILINEAR_BIT : 0) | shadingBits(node)};
     return out;
 }
 

@@ -137,6 +137,29 @@ void TerrainRenderer::bindTextures(const FrameTargets& targets, const GpuTiles& 
     if (sky_) sky_->bind();
 }
 
+void TerrainRenderer::bindShading(const RenderOptions& options) {
+    const ShadingOptions& shading = options.shading;
+    if (!needsOf(shading.mode).measures) return;
+    const glm::dvec4 measures(shading.lowest.value(), shading.highest.value(), shading.contourInterval.value(),
+                              shading.tolerance.value());
+    const interop::ShadingParameters parameters{.heights = glm::vec4(measures)};
+    if (!shadingBuffer_) {
+        shadingBuffer_ = makeBuffer();
+        glNamedBufferStorage(shadingBuffer_.name(), sizeof(parameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    }
+    glNamedBufferSubData(shadingBuffer_.name(), 0, sizeof(parameters), &parameters);
+    glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_SHADING, shadingBuffer_.name());
+}
+
+/// Steps that were counted into images, as a texture for the resolve pass.
+void bindSteps(const CastFrame& frame) {
+    const ShadingNeeds needs = needsOf(frame.features.shading);
+    if (!needs.steps && !(needs.shadowSteps && frame.features.shadows)) return;
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    glBindTextureUnit(TERRAY_UNIT_STEPS,
+                      needs.steps ? frame.targets.steps.name() : frame.targets.shadow().steps.name());
+}
+
 void TerrainRenderer::draw(const CastFrame& frame, Launch launch) {
     const bool raster = launch != Launch::compute;
     if (raster) {
@@ -148,6 +171,7 @@ void TerrainRenderer::draw(const CastFrame& frame, Launch launch) {
         ShadowScene scene = shadowScene(drawn_, nodes_, tiling_, frame.view);
         shadowPass_->cast(frame, std::move(scene), shadowOptions_, raster ? &rasterLaunch_ : nullptr);
     }
+    bindSteps(frame);
     if (raster) {
         rasterLaunch_.resolve(frame);
     } else {
@@ -205,6 +229,10 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     features.curved = view.earth.has_value();
     features.sky = options.sky;
     features.air = options.visualRange.has_value();
+    features.shading = options.shading.mode;
+    const ShadingNeeds needs = needsOf(features.shading);
+    TERRAY_CHECK(features.statistics || !(needs.steps || needs.shadowSteps));
+    TERRAY_CHECK(features.shading != Shading::contours || options.shading.contourInterval > Metres(0));
     // Below the horizon the sun lights nothing, and no ray finds out more.
     features.shadows = options.shadows.has_value() && options.sunDirection.z > 0;
     if (features.shadows) {
@@ -214,6 +242,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
         targets.dropShadow();
     }
     glViewport(0, 0, view.width, view.height);
+    bindShading(options);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 
     CastFrame frame{.view = view,
@@ -237,7 +266,8 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
 uint64_t TerrainRenderer::bufferBytes() const {
     return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) +
            RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes() + (sky_ ? sky_->bytes() : 0) +
-           (shadowPass_ ? shadowPass_->bufferBytes() : 0) + (overlay_ ? overlay_->bytes() : 0);
+           (shadowPass_ ? shadowPass_->bufferBytes() : 0) + (shadingBuffer_ ? sizeof(interop::ShadingParameters) : 0) +
+           (overlay_ ? overlay_->bytes() : 0);
 }
 
 }  // namespace terray

@@ -61,6 +61,7 @@ struct RenderOptions {
     /// Aerial perspective: how far a black mountain at sea level is still told from the sky. None: clear as glass.
     std::optional<Metres> visualRange;
     std::optional<ShadowOptions> shadows;  ///< none: the sun shines through hills
+    ShadingOptions shading;                ///< modes that show steps need FeatureSet::statistics of the targets
 };
 
 /// Draws lists of nodes by ray casting (paper 001, section 3): a march of each pixel's ray through the nodes, front to
@@ -106,6 +107,7 @@ class TerrainRenderer {
                        const RenderOptions& options);
     void uploadFrame(const View& view, const RenderOptions& options);
     void makeSky(const View& view, const RenderOptions& options);
+    void bindShading(const RenderOptions& options);
     void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
 
     const ShaderLibrary& shaders_;
@@ -124,6 +126,7 @@ class TerrainRenderer {
     GlSampler photoSampler_;
     std::unique_ptr<SkyTable> sky_;  ///< while RenderOptions::sky is on
     uint64_t nodeCapacity_ = 0;
+    GlBuffer shadingBuffer_;                ///< from the first frame that needs it
     std::unique_ptr<OverlayPass> overlay_;  ///< none without meshes
 };
 

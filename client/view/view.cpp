@@ -155,6 +155,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
                 options.height, report.nodes, report.residentHeights, report.residentImagery,
                 report.wanted > 0 ? ", coarser than asked: the GPU memory budget is too small" : "");
     std::printf("earth: %s\n", engine.earth().description().c_str());
+    if (engine.shading().mode != Shading::photo) std::printf("shading: %s\n", description(engine.shading()).c_str());
     return ExitCode::ok;
 }
 

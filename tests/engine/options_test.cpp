@@ -115,6 +115,25 @@ TEST(EngineOptions, SkyAndAirAreOffUnlessAskedFor) {
     EXPECT_FALSE(parsed({"--visual-range", "off"}).render.visualRange.has_value());
 }
 
+TEST(EngineOptions, EveryShadingModeHasItsName) {
+    EXPECT_EQ(parsed({}).render.shading.mode, Shading::photo);
+    for (const ShadingMode& mode : kShadingModes)
+        EXPECT_EQ(parsed({"--shading", std::string(mode.name), "--shadows", "on"}).render.shading.mode, mode.shading);
+}
+
+TEST(EngineOptions, ContoursHaveTheIntervalThatIsAskedFor) {
+    EXPECT_EQ(parsed({"--shading", "contours"}).render.shading.contourInterval, Metres(0)) << "the dataset decides";
+    EXPECT_EQ(parsed({"--shading", "contours", "--contour-interval", "7.5"}).render.shading.contourInterval,
+              Metres(7.5));
+    EXPECT_EQ(refusal({"--shading", "contours", "--contour-interval", "0"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--shading", "height", "--contour-interval", "5"}), ExitCode::usage);
+}
+
+TEST(EngineOptions, MemoryGoesToHeightsWhereAModeShowsNoPhoto) {
+    EXPECT_EQ(parsed({"--gpu-memory", "100M", "--shading", "height"}).gpuHeightBytes, 100ull << 20);
+    EXPECT_EQ(parsed({"--gpu-memory", "100M", "--shading", "residency"}).gpuHeightBytes, 50ull << 20);
+}
+
 TEST(EngineOptions, OutOfRangeIsAUsageError) {
     for (const auto& arguments : std::vector<std::vector<std::string>>{{"--tolerance", "0"},
                                                                        {"--tolerance", "-1"},
@@ -136,6 +155,9 @@ TEST(EngineOptions, OutOfRangeIsAUsageError) {
                                                                        {"--visual-range", "999"},
                                                                        {"--visual-range", "300001"},
                                                                        {"--visual-range", "far"},
+                                                                       {"--shading", "pretty"},
+                                                                       {"--shading", "shadow-steps"},
+                                                                       {"--contour-interval", "50"},
                                                                        {"--host-memory", "much"}})
         EXPECT_EQ(refusal(arguments), ExitCode::usage) << arguments[0] << " " << arguments[1];
 }

@@ -1,5 +1,6 @@
 #include "client/render/feature_set.h"
 
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -27,14 +28,23 @@ constexpr Named kFeatures[] = {
     {&FeatureSet::sky, "TERRAY_SKY"},
     {&FeatureSet::air, "TERRAY_AIR"},
 };
-static_assert(std::size(kFeatures) == sizeof(FeatureSet), "a new feature joins these tests");
+static_assert(std::size(kFeatures) + sizeof(Shading) == sizeof(FeatureSet), "a new feature joins these tests");
 
-/// Every combination of features.
+/// Modes with a define of their own, and the two of all.
+constexpr size_t kShadingDefines = kShadingModes.size() - 2 + 2;
+
+/// Every combination of features with the photo, and each mode with none of them and with all.
 std::vector<FeatureSet> allFeatureSets() {
     std::vector<FeatureSet> sets;
     for (unsigned bits = 0; bits < 1u << std::size(kFeatures); ++bits) {
         FeatureSet& features = sets.emplace_back();
         for (size_t i = 0; i < std::size(kFeatures); ++i) features.*kFeatures[i].feature = (bits >> i & 1) != 0;
+    }
+    FeatureSet all;
+    for (const Named& named : kFeatures) all.*named.feature = true;
+    for (const ShadingMode& mode : kShadingModes) {
+        sets.emplace_back().shading = mode.shading;
+        sets.emplace_back(all).shading = mode.shading;
     }
     return sets;
 }
@@ -42,7 +52,7 @@ std::vector<FeatureSet> allFeatureSets() {
 TEST(FeatureSet, DefinesEveryFeatureAsZeroOrOne) {
     for (const FeatureSet& features : allFeatureSets()) {
         const ShaderDefines defines = features.defines();
-        EXPECT_EQ(defines.size(), sizeof(FeatureSet));
+        EXPECT_EQ(defines.size(), std::size(kFeatures) + kShadingDefines);
         for (const auto& [name, value] : defines) {
             EXPECT_TRUE(name.starts_with("TERRAY_")) << name;
             EXPECT_TRUE(value == "0" || value == "1") << name << " " << value;
@@ -73,6 +83,64 @@ TEST(FeatureSet, MarchAndResolveIgnoreWhatTheyDoNotUse) {
     // Only a photo's footprint asks how the earth falls.
     const FeatureSet photoOverCurve{.imagery = true, .curved = true};
     EXPECT_EQ(photoOverCurve.resolving(), photoOverCurve);
+}
+
+TEST(FeatureSet, OneModeIsCompiledInAndOnlyWhereItShowsSomethingElseThanThePhoto) {
+    for (const ShadingMode& mode : kShadingModes) {
+        const ShaderDefines defines = FeatureSet{.shading = mode.shading}.defines();
+        size_t on = 0;
+        for (const ShadingMode& other : kShadingModes)
+            if (!other.define.empty()) {
+                on += defines.at(std::string(other.define)) == "1" ? 1 : 0;
+            }
+        EXPECT_EQ(on, mode.define.empty() ? 0u : 1u) << mode.name;
+        EXPECT_EQ(defines.at("TERRAY_SHADING"), mode.define.empty() ? "0" : "1") << mode.name;
+        EXPECT_EQ(kShadingModes[static_cast<size_t>(mode.shading)].name, mode.name);
+        if (!mode.define.empty()) {
+            EXPECT_EQ(defines.at(std::string(mode.define)), "1");
+        }
+    }
+}
+
+TEST(FeatureSet, ModesLeaveOutWhatTheyDoNotShow) {
+    FeatureSet all;
+    for (const Named& named : kFeatures) all.*named.feature = true;
+    const auto resolving = [&](Shading shading) {
+        all.shading = shading;
+        return all.resolving();
+    };
+    for (const ShadingMode& mode : kShadingModes) {
+        const FeatureSet kept = resolving(mode.shading);
+        const bool photo = mode.shading == Shading::photo;
+        EXPECT_EQ(kept.imagery, photo) << mode.name;
+        EXPECT_EQ(kept.photoProbes, photo) << mode.name;
+        EXPECT_EQ(kept.curved, photo || mode.shading == Shading::grid || mode.shading == Shading::contours);
+        EXPECT_EQ(kept.resolving(), kept) << mode.name;
+        // The march, shadow rays and overlays are the same programs whatever the mode.
+        for (const FeatureSet& other : {all.marching(), all.shadowing(), all.overlaying()})
+            EXPECT_EQ(other.shading, Shading::photo) << mode.name;
+    }
+    EXPECT_EQ(resolving(Shading::light).shading, Shading::photo) << "light is the photo's program without a photo";
+    for (const Shading measured : {Shading::depth, Shading::normal, Shading::slope}) {
+        EXPECT_FALSE(resolving(measured).air || resolving(measured).shadows);
+        EXPECT_TRUE(resolving(measured).sky);
+    }
+    EXPECT_FALSE(resolving(Shading::steps).sky || resolving(Shading::steps).shadows);
+    EXPECT_TRUE(resolving(Shading::shadowSteps).shadows) << "without shadows there are none to count";
+    EXPECT_TRUE(resolving(Shading::contours).air && resolving(Shading::contours).shadows);
+}
+
+TEST(Shading, ContoursLieAtOneTwoOrFiveTimesAPowerOfTen) {
+    const auto interval = [](double lowest, double highest) {
+        return automaticContourInterval(Metres(lowest), Metres(highest)).value();
+    };
+    EXPECT_NEAR(interval(1358, 4298), 100, 1e-9);
+    EXPECT_NEAR(interval(-400, 8848), 200, 1e-9);
+    EXPECT_NEAR(interval(600, 1400), 20, 1e-9);
+    EXPECT_NEAR(interval(0, 999), 20, 1e-9);
+    EXPECT_NEAR(interval(0, 1001), 50, 1e-9);
+    EXPECT_NEAR(interval(0, 4.1), 0.2, 1e-9);
+    EXPECT_EQ(interval(7, 7), 1);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "client/render/feature_set.h"
 #include "client/render/shader_library.h"
 #include "tests/render/gl_test.h"
+#include "tests/render/preprocessed.h"
 
 namespace terray {
 namespace {
@@ -117,6 +118,67 @@ TEST_F(PayForUse, OverlaysReadHitsAndWhatTheirMeshIs) {
     Names throughAir = own;
     throughAir.insert("airTable");
     EXPECT_EQ(overlay({.sky = true, .air = true}), throughAir);
+}
+
+const std::vector<std::vector<std::string>> kResolvePrograms = {{"screen.vert", "resolve.frag"}, {"resolve.comp"}};
+
+TEST_F(PayForUse, ThePhotosProgramIsWhatItIsWhereNoShadingModeExists) {
+    const ShaderFolder without(ShaderFiles{{"shading.glsl", ""}});
+    const ShaderLibrary bare(without.path());
+    for (const char* root : {"resolve.frag", "resolve.comp"})
+        for (const FeatureSet& features :
+             {FeatureSet{}, FeatureSet{.imagery = true, .photoProbes = true}, FeatureSet{.shading = Shading::light},
+              FeatureSet{
+                  .imagery = true, .normals = true, .curved = true, .sky = true, .air = true, .shadows = true}}) {
+            const ShaderDefines defines = features.resolving().defines();
+            const std::string code = preprocessed(shaders_.resolve(root, defines).value().text);
+            EXPECT_EQ(code, preprocessed(bare.resolve(root, defines).value().text)) << root;
+            EXPECT_NE(code.find("vec3 groundColour("), std::string::npos) << "the preprocessor lost the program";
+            for (const char* part : {"legendColour", "linearFromSrgb", "ShadingBuffer", "stepColour", "lineCover"})
+                EXPECT_EQ(code.find(part), std::string::npos) << root << " holds " << part;
+        }
+}
+
+TEST_F(PayForUse, AShadingModeReadsNothingButItsOwn) {
+    for (const auto& stages : kResolvePrograms) {
+        const auto program = [&](const FeatureSet& features) { return shaders_.require(stages, features.defines()); };
+        const Names bare = uniformsOf(program({}));
+        for (const ShadingMode& mode : kShadingModes) {
+            // Neither photo nor probes are on for any of them but the photo itself.
+            const FeatureSet features = FeatureSet{.imagery = mode.shading != Shading::photo,
+                                                   .curved = true,
+                                                   .shadows = mode.shading == Shading::shadowSteps,
+                                                   .shading = mode.shading}
+                                            .resolving();
+            const ShadingNeeds needs = needsOf(mode.shading);
+            Names buffers = {"FrameBuffer", "NodeBuffer"};
+            if (needs.measures) buffers.insert("ShadingBuffer");
+            Names expected = bare;
+            if (needs.steps || needs.shadowSteps) {
+                expected.insert("stepCounts");
+                for (const char* ground : {"heightCodes", "hitNodes", "hits"}) expected.erase(ground);
+            }
+            if (mode.shading == Shading::depth) expected.erase("heightCodes");
+            const GlProgram made = program(features);
+            EXPECT_EQ(uniformsOf(made), expected) << mode.name;
+            EXPECT_EQ(buffersOf(made), buffers) << mode.name;
+        }
+    }
+}
+
+TEST_F(PayForUse, EveryShadingModeCompilesBesideEveryOtherFeature) {
+    for (const ShadingMode& mode : kShadingModes)
+        for (int bits = 0; bits < 1 << 6; ++bits) {
+            const FeatureSet features{.normals = (bits & 1) != 0,
+                                      .linearColour = (bits & 2) != 0,
+                                      .curved = (bits & 4) != 0,
+                                      .sky = (bits & 8) != 0,
+                                      .air = (bits & 16) != 0,
+                                      .shadows = (bits & 32) != 0,
+                                      .shading = mode.shading};
+            if (features != features.resolving()) continue;
+            for (const auto& stages : kResolvePrograms) EXPECT_TRUE(shaders_.require(stages, features.defines()));
+        }
 }
 
 TEST_F(PayForUse, EveryCombinationOfFeaturesCompiles) {
