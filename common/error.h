@@ -16,8 +16,11 @@ enum class ExitCode : int {
     dataset = 5,       ///< not a dataset, a damaged one, or one of another format version
     georeference = 6,  ///< sources do not overlap, or their coordinate system is missing or unusable
     graphics = 7,      ///< no EGL or OpenGL 4.5, or a shader that does not compile
-    verification = 8,  ///< `verify` ran to its end and found faults
+    verification = 8,  ///< `verify`, or the stability suite, ran to its end and found faults
     unsupported = 9,   ///< this build lacks the optional library that the request needs
+    network = 10,      ///< an address cannot be listened at, or a server cannot be reached
+    threshold = 11,    ///< `compare` ran to its end and found a threshold of --fail-if crossed
+    display = 12,      ///< no display to open a window on
     interrupted = 130  ///< stopped by SIGINT
 };
 
