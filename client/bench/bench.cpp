@@ -12,6 +12,7 @@ constexpr const char* kUsage =
     "                                      flies it at a fixed rate and writes what each frame cost\n"
     "  error DATASET --flight FLIGHT.json --out DIR\n"
     "                                      measures its pictures against the truth, and their time\n"
+    "  compare RUN_A RUN_B                 holds the figures of one run against another's, and fails if told when\n"
     "  image-error REFERENCE TEST          compares two pictures, or the frames of two replays: FLIP and PSNR\n"
     "Each command tells its options with --help; terray-bench --version says what was built.\n";
 
@@ -27,9 +28,10 @@ ExitCode runBench(const std::vector<std::string>& arguments) {
     if (command == "tour") return runTour(rest);
     if (command == "replay") return runReplay(rest);
     if (command == "error") return runError(rest);
+    if (command == "compare") return runCompare(rest);
     if (command == "image-error") return runImageError(rest);
     const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
-    throw Error(ExitCode::usage, found + ", expected tour, replay, error or image-error (--help tells more)");
+    throw Error(ExitCode::usage, found + ", expected tour, replay, error, compare or image-error (--help tells more)");
 }
 
 }  // namespace terray

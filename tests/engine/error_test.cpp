@@ -116,6 +116,9 @@ TEST_F(ErrorTest, WritesItsTableAsDocumented) {
     const Json manifest = Json::parse(textOf(own_ / "run" / "manifest.json")).value();
     EXPECT_EQ(manifest.find("protocol")->numberAt("width").value(), 64);
     EXPECT_EQ(manifest.stringAt("sweep").value(), "launch");
+    const std::string run = (own_ / "run").string();
+    EXPECT_EQ(runBench({"compare", run, run, "--fail-if", "error_px.p99>1x,lacking.sum>0"}), ExitCode::ok);
+    EXPECT_EQ(runBench({"compare", run, run, "--fail-if", "error_px.p99>0.99x"}), ExitCode::threshold);
 }
 
 #if TERRAY_WITH_OUTPUT
