@@ -41,7 +41,7 @@ bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
     line.option("--out", options.out, "DIR", "for errors.csv, summary.json, manifest.json and maps/").required();
-    line.option("--sweep", options.sweep, "tolerance|surface|launch|anisotropy|pyramid",
+    line.option("--sweep", options.sweep, "tolerance|surface|launch|anisotropy|method",
                 "measure these settings one after the other, not the options as given alone");
     line.size("--size", options.protocol.width, options.protocol.height, "of a frame in pixels (640x360)");
     line.option("--frames", options.frames, "N", "spread evenly over the flight (8)");

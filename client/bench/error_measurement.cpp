@@ -81,7 +81,7 @@ void ErrorMeasurement::drawReferences(const EngineOptions& base) {
     finest.selection.tolerance = Pixels(0.25);
     finest.selection.imageryTolerance = Pixels(1);
     finest.render.surface = Surface::bilinear;
-    finest.render.pyramid = true;
+    finest.render.method = Method::pyramid;
     finest.render.anisotropy = 16;
     const int times = protocol_.supersampling;
     Engine engine(source_, shaders_, finest, protocol_.width * times, protocol_.height * times);

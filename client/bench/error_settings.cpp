@@ -58,14 +58,10 @@ void sweepAnisotropy(Sweep& sweep) {
                   [&](EngineOptions& options) { options.render.anisotropy = static_cast<float>(ratio); });
 }
 
-void sweepPyramid(Sweep& sweep) {
-    for (const bool pyramid : {true, false}) {
-        const std::string name = pyramid ? "columns, pyramid" : "columns, no pyramid";
-        sweep.add(name, name, [&](EngineOptions& options) {
-            options.render.surface = Surface::columns;
-            options.render.pyramid = pyramid;
-        });
-    }
+void sweepMethod(Sweep& sweep) {
+    for (const MethodEntry& entry : kMethods)
+        sweep.add(std::string(entry.name), std::string(entry.name),
+                  [&](EngineOptions& options) { options.render.method = entry.method; });
 }
 
 }  // namespace
@@ -82,11 +78,11 @@ std::vector<ErrorSetting> settingsOf(const std::string& name, const EngineOption
         sweepLaunch(sweep);
     } else if (name == "anisotropy") {
         sweepAnisotropy(sweep);
-    } else if (name == "pyramid") {
-        sweepPyramid(sweep);
+    } else if (name == "method") {
+        sweepMethod(sweep);
     } else {
         throw Error(ExitCode::usage,
-                    "--sweep: found \"" + name + "\", expected tolerance, surface, launch, anisotropy or pyramid");
+                    "--sweep: found \"" + name + "\", expected tolerance, surface, launch, anisotropy or method");
     }
     return sweep.take();
 }

@@ -21,7 +21,7 @@ struct ErrorSetting {
 ///     surface     auto, columns, bilinear
 ///     launch      raster, compute
 ///     anisotropy  1, 2, 4, 8, 16
-///     pyramid     on, off, both with columns
+///     method      each of kMethods
 ///
 /// Throws Error(usage) on any other name.
 [[nodiscard]] std::vector<ErrorSetting> settingsOf(const std::string& sweep, const EngineOptions& base);

@@ -37,6 +37,14 @@ std::string degreesOf(const glm::dvec3& sun) {
     return text;
 }
 
+/// The names of a table's entries, one after the other.
+template <class Table>
+std::string namesOf(const Table& table, const char* between) {
+    std::string names;
+    for (const auto& entry : table) names += (names.empty() ? "" : between) + std::string(entry.name);
+    return names;
+}
+
 UtcTime sunTime(const std::string& text, bool sunGiven) {
     if (sunGiven) throw Error(ExitCode::usage, "--sun and --sun-time both say where the sun is: give one of them");
     const Result<UtcTime> time = parseUtcTime(text);
@@ -92,12 +100,15 @@ Surface surfaceNamed(const std::string& name) {
 }
 
 Shading shadingNamed(const std::string& name) {
-    std::string expected;
-    for (const ShadingMode& mode : kShadingModes) {
+    for (const ShadingMode& mode : kShadingModes)
         if (mode.name == name) return mode.shading;
-        expected += (expected.empty() ? "one of " : ", ") + std::string(mode.name);
-    }
-    refuse("--shading", name, expected);
+    refuse("--shading", name, "one of " + namesOf(kShadingModes, ", "));
+}
+
+Method methodNamed(const std::string& name) {
+    for (const MethodEntry& entry : kMethods)
+        if (entry.name == name) return entry.method;
+    refuse("--method", name, "one of " + namesOf(kMethods, ", "));
 }
 
 EarthShape earthShapeNamed(const std::string& name) {
@@ -139,15 +150,13 @@ void EngineCommandLine::declare(CommandLine& line) {
                 "11 km at 720 rows, and only with a coordinate system (auto)");
     line.option("--refraction", refraction_, "K",
                 "by which part of the earth's curvature air bends light, -5 to 0.99; 0: none (0.13)");
-    line.option("--pyramid", pyramid_, "on|off", "off, to measure it: rays walk from sample to sample (on)");
+    line.option("--method", method_, namesOf(kMethods, "|"), "how the visible surface is found (pyramid)");
     line.option("--shadows", shadows_, "on|off", "cast by the ground, tiles outside the picture included (off)");
     line.option("--sun-diameter", sunDiameter_, "DEGREES",
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
     line.option("--shadow-rays", shadowRays_, "N", "of each pixel when the sun has a diameter, 1 to 64 (8)");
     line.option("--edits", edits_, "FILE.json", "craters and brush strokes on the ground; the dataset stays as it is");
-    std::string modes;
-    for (const ShadingMode& mode : kShadingModes) modes += (modes.empty() ? "" : "|") + std::string(mode.name);
-    line.option("--shading", shading_, "MODE", "what the ground shows: " + modes + " (photo)");
+    line.option("--shading", shading_, "MODE", "what the ground shows: " + namesOf(kShadingModes, "|") + " (photo)");
     line.option("--contour-interval", contourInterval_, "METRES",
                 "between contour lines, 0.01 to 10000 (1, 2 or 5 times a power of ten, for at least 20 lines)");
     overlay_.declare(line);
@@ -165,7 +174,6 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--refraction", refraction_, -5, 0.99);
     requireRange("--sun-diameter", sunDiameter_, 0, 20);
     requireRange("--shadow-rays", static_cast<double>(shadowRays_), 1, 64);
-    if (pyramid_ != "on" && pyramid_ != "off") refuse("--pyramid", pyramid_, "on or off");
     if (shadows_ != "on" && shadows_ != "off") refuse("--shadows", shadows_, "on or off");
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (sky_ != "gradient" && sky_ != "physical") refuse("--sky", sky_, "gradient or physical");
@@ -186,7 +194,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.render.occlusion = occlusion_ == "on";
     options.render.surface = surfaceNamed(surface_);
     options.earth = {.shape = earthShapeNamed(earth_), .refraction = refraction_};
-    options.render.pyramid = pyramid_ == "on";
+    options.render.method = methodNamed(method_);
     if (shadows_ == "on") {
         options.render.shadows = ShadowOptions{.sunDiameter = radiansFromDegrees(sunDiameter_).value(),
                                                .rays = static_cast<int>(shadowRays_)};
@@ -232,7 +240,7 @@ Json EngineCommandLine::toJson() const {
                         {"launch", launch_},
                         {"occlusion", occlusion_},
                         {"surface", surface_},
-                        {"pyramid", pyramid_},
+                        {"method", method_},
                         {"shadows", shadows_},
                         {"sun-diameter", sunDiameter_},
                         {"shadow-rays", shadowRays_},

@@ -59,7 +59,7 @@ class EngineCommandLine {
     double exaggeration_ = EngineOptions().exaggeration;
     std::string earth_ = "auto";
     double refraction_ = EarthOptions().refraction;
-    std::string pyramid_ = "on";
+    std::string method_ = "pyramid";
     std::string shadows_ = "off";
     double sunDiameter_ = 0;
     int64_t shadowRays_ = ShadowOptions().rays;
@@ -88,6 +88,9 @@ class EngineCommandLine {
 
 /// The mode of kShadingModes that has this name. Throws Error(usage) on anything else.
 [[nodiscard]] Shading shadingNamed(const std::string& name);
+
+/// The method of kMethods that has this name. Throws Error(usage) on anything else.
+[[nodiscard]] Method methodNamed(const std::string& name);
 
 /// The surface that "auto", "columns" or "bilinear" names. Throws Error(usage) on anything else.
 [[nodiscard]] Surface surfaceNamed(const std::string& name);

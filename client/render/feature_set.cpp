@@ -3,7 +3,11 @@
 namespace terray {
 
 FeatureSet FeatureSet::marching() const {
-    return {.statistics = statistics, .occlusion = occlusion, .bilinear = bilinear, .curved = curved};
+    return {.statistics = statistics,
+            .occlusion = occlusion,
+            .bilinear = bilinear,
+            .curved = curved,
+            .method = entryOf(method).define.empty() ? Method::pyramid : method};
 }
 
 FeatureSet FeatureSet::resolving() const {
@@ -46,6 +50,8 @@ ShaderDefines FeatureSet::defines() const {
         {"TERRAY_SOFT_SUN", digit(softSun)},
         {"TERRAY_SRGB_COLOUR", digit(!linearColour)},
     };
+    for (const MethodEntry& entry : kMethods)
+        if (!entry.define.empty()) defines.emplace(entry.define, digit(entry.method == method));
     bool ownGround = false;
     for (const ShadingMode& mode : kShadingModes) {
         if (mode.define.empty()) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "client/render/method.h"
 #include "client/render/shader_library.h"
 #include "client/render/shading.h"
 
@@ -26,6 +27,8 @@ struct FeatureSet {
     /// TERRAY_SHADING and one of TERRAY_SHADE_...: what the ground shows in place of its photo. Photo and light have
     /// neither: light is the photo's program without imagery.
     Shading shading = Shading::photo;
+
+    Method method = Method::pyramid;  ///< one of TERRAY_METHOD_..., or none of them: how the march finds the surface
 
     auto operator<=>(const FeatureSet&) const = default;
 

@@ -87,7 +87,7 @@ void TerrainRenderer::describeNodes(const View& view, std::span<const DrawNode> 
         }
         source.bilinear = options.surface == Surface::bilinear ||
                           (options.surface == Surface::automatic && magnified(node, tiling_, view));
-        source.pyramid = options.pyramid;
+        source.pyramid = options.method != Method::march;
         source.castsShadow = options.shadows.has_value();
         drawn_.push_back(node);
         nodes_.push_back(nodeParameters(node, source, tiling_, view));
@@ -230,6 +230,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     features.sky = options.sky;
     features.air = options.visualRange.has_value();
     features.shading = options.shading.mode;
+    features.method = options.method;
     const ShadingNeeds needs = needsOf(features.shading);
     TERRAY_CHECK(features.statistics || !(needs.steps || needs.shadowSteps));
     TERRAY_CHECK(features.shading != Shading::contours || options.shading.contourInterval > Metres(0));

@@ -54,7 +54,7 @@ struct RenderOptions {
     Launch launch = Launch::raster;
     bool occlusion = true;  ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
-    bool pyramid = true;  ///< off, to measure what the maximum mipmap gains: rays walk from sample to sample
+    Method method = Method::pyramid;
     /// The sky of the sun's elevation, and its light on the ground; off: a gradient, and light as under a sun at 40
     /// degrees. Heights count from the sea (z = 0).
     bool sky = false;

@@ -95,6 +95,12 @@ TEST_F(ErrorTest, SeesWhatColumnsAndTolerancesCost) {
     EXPECT_LT(at(coarse, "nodes", "sum"), at(fine, "nodes", "sum"));
 }
 
+TEST_F(ErrorTest, TheMethodSweepMeasuresEachOnce) {
+    ASSERT_EQ(measure({"--sweep", "method"}), ExitCode::ok) << message_;
+    for (const MethodEntry& entry : kMethods) EXPECT_EQ(at(setting(std::string(entry.name)), "lacking", "sum"), 0);
+    EXPECT_EQ(at(setting("march"), "error_px", "max"), at(setting("pyramid"), "error_px", "max")) << "both are exact";
+}
+
 TEST_F(ErrorTest, WritesItsTableAsDocumented) {
     ASSERT_EQ(measure({"--sweep", "launch"}), ExitCode::ok) << message_;
     std::stringstream table(textOf(own_ / "run" / "errors.csv"));

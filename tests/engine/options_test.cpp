@@ -115,6 +115,13 @@ TEST(EngineOptions, SkyAndAirAreOffUnlessAskedFor) {
     EXPECT_FALSE(parsed({"--visual-range", "off"}).render.visualRange.has_value());
 }
 
+TEST(EngineOptions, EveryMethodHasItsName) {
+    EXPECT_EQ(parsed({}).render.method, Method::pyramid);
+    for (const MethodEntry& entry : kMethods)
+        EXPECT_EQ(parsed({"--method", std::string(entry.name)}).render.method, entry.method);
+    EXPECT_EQ(refusal({"--method", "magic"}), ExitCode::usage);
+}
+
 TEST(EngineOptions, EveryShadingModeHasItsName) {
     EXPECT_EQ(parsed({}).render.shading.mode, Shading::photo);
     for (const ShadingMode& mode : kShadingModes)

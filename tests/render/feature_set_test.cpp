@@ -1,5 +1,6 @@
 #include "client/render/feature_set.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,13 @@ constexpr Named kFeatures[] = {
     {&FeatureSet::sky, "TERRAY_SKY"},
     {&FeatureSet::air, "TERRAY_AIR"},
 };
-static_assert(std::size(kFeatures) + sizeof(Shading) == sizeof(FeatureSet), "a new feature joins these tests");
+static_assert(std::size(kFeatures) + sizeof(Shading) + sizeof(Method) == sizeof(FeatureSet), "a new feature joins these tests");
 
 /// Modes with a define of their own, and the two of all.
 constexpr size_t kShadingDefines = kShadingModes.size() - 2 + 2;
+/// Methods with a define of their own.
+constexpr auto kMethodDefines = static_cast<size_t>(
+    std::ranges::count_if(kMethods, [](const MethodEntry& entry) { return !entry.define.empty(); }));
 
 /// Every combination of features with the photo, and each mode with none of them and with all.
 std::vector<FeatureSet> allFeatureSets() {
@@ -46,13 +50,14 @@ std::vector<FeatureSet> allFeatureSets() {
         sets.emplace_back().shading = mode.shading;
         sets.emplace_back(all).shading = mode.shading;
     }
+    for (const MethodEntry& entry : kMethods) sets.emplace_back(all).method = entry.method;
     return sets;
 }
 
 TEST(FeatureSet, DefinesEveryFeatureAsZeroOrOne) {
     for (const FeatureSet& features : allFeatureSets()) {
         const ShaderDefines defines = features.defines();
-        EXPECT_EQ(defines.size(), std::size(kFeatures) + kShadingDefines);
+        EXPECT_EQ(defines.size(), std::size(kFeatures) + kShadingDefines + kMethodDefines);
         for (const auto& [name, value] : defines) {
             EXPECT_TRUE(name.starts_with("TERRAY_")) << name;
             EXPECT_TRUE(value == "0" || value == "1") << name << " " << value;
@@ -83,6 +88,21 @@ TEST(FeatureSet, MarchAndResolveIgnoreWhatTheyDoNotUse) {
     // Only a photo's footprint asks how the earth falls.
     const FeatureSet photoOverCurve{.imagery = true, .curved = true};
     EXPECT_EQ(photoOverCurve.resolving(), photoOverCurve);
+}
+
+TEST(FeatureSet, OneMethodIsCompiledInAndOnlyIntoTheMarch) {
+    for (const MethodEntry& entry : kMethods) {
+        EXPECT_EQ(entryOf(entry.method).name, entry.name) << "the table's order is that of the enumeration";
+        const FeatureSet features{.method = entry.method};
+        const ShaderDefines defines = features.marching().defines();
+        for (const MethodEntry& other : kMethods)
+            if (!other.define.empty()) {
+                EXPECT_EQ(defines.at(std::string(other.define)), other.method == entry.method ? "1" : "0") << entry.name;
+            }
+        EXPECT_EQ(features.marching() == FeatureSet(), entry.define.empty()) << entry.name;
+        for (const FeatureSet& other : {features.resolving(), features.shadowing(), features.overlaying()})
+            EXPECT_EQ(other.method, Method::pyramid) << "all else is the same program whatever the method";
+    }
 }
 
 TEST(FeatureSet, OneModeIsCompiledInAndOnlyWhereItShowsSomethingElseThanThePhoto) {
