@@ -22,8 +22,8 @@ ExitCode runReplay(const std::vector<std::string>& arguments);
 /// several settings. The files are documented in client/README.md, "Error against run time".
 ExitCode runError(const std::vector<std::string>& arguments);
 
-/// `terray-bench compare`: holds the figures of two runs of replay or error against each other. Throws Error(usage) when
-/// they were not measured alike. Returns ExitCode::threshold when a limit of --fail-if is crossed.
+/// `terray-bench compare`: holds the figures of two runs of replay or error against each other. Throws Error(usage)
+/// when they were not measured alike. Returns ExitCode::threshold when a limit of --fail-if is crossed.
 ExitCode runCompare(const std::vector<std::string>& arguments);
 
 /// `terray-bench image-error`: says how far pictures, or the frames of two replays, are from each other. Throws

@@ -41,7 +41,7 @@ bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
     line.option("--out", options.out, "DIR", "for errors.csv, summary.json, manifest.json and maps/").required();
-    line.option("--sweep", options.sweep, "tolerance|surface|launch|anisotropy|method",
+    line.option("--sweep", options.sweep, sweepNames(),
                 "measure these settings one after the other, not the options as given alone");
     line.size("--size", options.protocol.width, options.protocol.height, "of a frame in pixels (640x360)");
     line.option("--frames", options.frames, "N", "spread evenly over the flight (8)");
@@ -49,6 +49,8 @@ bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     line.option("--repeats", options.repeats, "N", "of the timed frames, after one untimed round (5)");
     line.option("--supersampling", options.supersampling, "N",
                 "of the pictures that pictures are held against: samples along a pixel's side (2)");
+    line.option("--fps", options.protocol.framesPerSecond, "N",
+                "of the flight: each frame and the one after it tell how much detail pops in (30)");
     line.flag("--maps", options.maps, "write the errors of each frame's pixels as PNG and EXR; takes all pixels");
     line.flag("--force", options.force, "replace an earlier run in DIR");
     options.engine.declare(line);
@@ -56,6 +58,8 @@ bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     requireRange("--frames", options.frames, 1, 10000);
     requireRange("--repeats", options.repeats, 1, 1000);
     requireRange("--supersampling", options.supersampling, 1, 8);
+    if (!(options.protocol.framesPerSecond > 0 && options.protocol.framesPerSecond <= 10000))
+        throw Error(ExitCode::usage, "--fps: expected a number above 0, at most 10000");
     requireRange("--pixels", options.protocol.pixels, 0, INT64_MAX);
     if (options.maps && !TERRAY_WITH_OUTPUT)
         throw Error(ExitCode::unsupported, "--maps: this build writes no pictures (TERRAY_WITH_OUTPUT is off)");
@@ -73,7 +77,8 @@ Json toJson(const ErrorProtocol& protocol) {
                         {"pixels", protocol.pixels},
                         {"repeats", protocol.repeats},
                         {"waitForTiles", true},
-                        {"supersampling", protocol.supersampling}};
+                        {"supersampling", protocol.supersampling},
+                        {"fps", protocol.framesPerSecond}};
 }
 
 Json summaryOf(const std::vector<ErrorResult>& results) {
@@ -93,7 +98,7 @@ ExitCode runError(const std::vector<std::string>& arguments) {
     options.engine.place(*source, base);
     if (!base.edits.empty())
         throw Error(ExitCode::usage, "--edits: errors are measured against the dataset's own ground; leave it out");
-    const std::vector<ErrorSetting> settings = settingsOf(options.sweep, base);
+    const std::vector<ErrorSetting> settings = settingsOf(options.sweep, base, source->metadata().quantum);
 
     RunDirectory directory(options.out, false, options.force);
     const HeadlessContext context;

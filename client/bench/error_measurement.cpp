@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "client/bench/requantised_source.h"
 #include "client/engine/program.h"
 #include "common/error.h"
 #include "common/percentile.h"
@@ -41,12 +42,27 @@ std::vector<DrawnPixel> drawnPixels(const Engine& engine, std::span<const glm::i
     return drawn;
 }
 
+double meanFlip(GridView<const Rgba> reference, GridView<const Rgba> test) {
+    const Grid<float> flip = flipOf(reference, test);
+    return spreadOf(flip.cells()).mean;
+}
+
+/// Nothing that the finest samples hold is left out.
+EngineOptions finestOf(const EngineOptions& base) {
+    EngineOptions finest = base;
+    finest.selection.tolerance = Pixels(0.25);
+    finest.selection.imageryTolerance = Pixels(1);
+    finest.render.surface = Surface::bilinear;
+    finest.render.method = Method::pyramid;
+    finest.render.anisotropy = 16;
+    return finest;
+}
+
 /// FLIP and PSNR of all frames.
 class PictureTotals {
   public:
     void add(GridView<const Rgba> reference, GridView<const Rgba> test) {
-        const Grid<float> flip = flipOf(reference, test);
-        flips_.push_back(static_cast<float>(spreadOf(flip.cells()).mean));
+        flips_.push_back(static_cast<float>(meanFlip(reference, test)));
         if (const auto ratio = psnr(reference, test)) ratios_.push_back(*ratio);
     }
     void tell(ErrorResult& result) const {
@@ -71,30 +87,46 @@ ErrorMeasurement::ErrorMeasurement(const TileSource& source, const ShaderLibrary
       heights_(source.metadata(), [&source](const TileId& id) { return source.read(TileLayer::heights, id); }),
       truth_(heights_, source.metadata().tiling, floorOf(source.metadata())) {}
 
+double ErrorMeasurement::secondsOf(int frame) const {
+    return protocol_.frames == 1 ? 0 : flight_.seconds() * frame / (protocol_.frames - 1);
+}
+
 Camera ErrorMeasurement::cameraOf(int frame) const {
-    if (protocol_.frames == 1) return flight_.at(0);
-    return flight_.at(flight_.seconds() * frame / (protocol_.frames - 1));
+    return flight_.at(secondsOf(frame));
+}
+
+Camera ErrorMeasurement::cameraBeside(int frame) const {
+    const double step = 1 / protocol_.framesPerSecond;
+    const double seconds = secondsOf(frame);
+    return flight_.at(seconds + step <= flight_.seconds() ? seconds + step : seconds - step);
 }
 
 void ErrorMeasurement::drawReferences(const EngineOptions& base) {
-    EngineOptions finest = base;
-    finest.selection.tolerance = Pixels(0.25);
-    finest.selection.imageryTolerance = Pixels(1);
-    finest.render.surface = Surface::bilinear;
-    finest.render.method = Method::pyramid;
-    finest.render.anisotropy = 16;
     const int times = protocol_.supersampling;
-    Engine engine(source_, shaders_, finest, protocol_.width * times, protocol_.height * times);
     references_.clear();
+    {
+        Engine engine(source_, shaders_, finestOf(base), protocol_.width * times, protocol_.height * times);
+        for (int frame = 0; frame < protocol_.frames; ++frame) {
+            draw(engine, cameraOf(frame));
+            references_.push_back(averaged(engine.targets().readSrgb().view(), times));
+        }
+    }
+    finestChanges_.clear();
+    Engine engine(source_, shaders_, finestOf(base), protocol_.width, protocol_.height);
     for (int frame = 0; frame < protocol_.frames; ++frame) {
         draw(engine, cameraOf(frame));
-        references_.push_back(averaged(engine.targets().readSrgb().view(), times));
+        const Grid<Rgba> picture = engine.targets().readSrgb();
+        draw(engine, cameraBeside(frame));
+        finestChanges_.push_back(meanFlip(picture.view(), engine.targets().readSrgb().view()));
     }
 }
 
 ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErrors& take) {
     ErrorResult result{.curve = setting.curve, .name = setting.name};
-    Engine engine(source_, shaders_, setting.options, protocol_.width, protocol_.height);
+    std::optional<RequantisedSource> coarser;
+    if (setting.quantum > 0) coarser.emplace(source_, setting.quantum);
+    const TileSource& source = coarser ? *coarser : source_;
+    Engine engine(source, shaders_, setting.options, protocol_.width, protocol_.height);
     time(engine, result);
 
     const bool all = protocol_.pixels == 0;
@@ -102,6 +134,7 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
     const std::vector<glm::ivec2> pixels = pixelPattern(protocol_.width, protocol_.height, count);
     ErrorTotals totals;
     PictureTotals pictures;
+    std::vector<float> popping;
     for (int frame = 0; frame < protocol_.frames; ++frame) {
         const FrameReport report = draw(engine, cameraOf(frame));
         result.nodes += report.nodes;
@@ -110,7 +143,11 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
         const auto errors = pixelErrors(truth_, engine.view(), pixels, drawnPixels(engine, pixels));
         totals.add(errors);
         if (take) take(setting.name, frame, errors);
-        pictures.add(references_[static_cast<size_t>(frame)].view(), engine.targets().readSrgb().view());
+        const Grid<Rgba> picture = engine.targets().readSrgb();
+        pictures.add(references_[static_cast<size_t>(frame)].view(), picture.view());
+        draw(engine, cameraBeside(frame));
+        const double change = meanFlip(picture.view(), engine.targets().readSrgb().view());
+        popping.push_back(static_cast<float>(change - finestChanges_[static_cast<size_t>(frame)]));
     }
     result.pixels = totals.pixels;
     result.seeThrough = totals.seeThrough;
@@ -119,6 +156,7 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
     result.depthMetres = spreadOf(totals.depthMetres);
     result.depthRelative = spreadOf(totals.depthRelative);
     pictures.tell(result);
+    result.popping = spreadOf(popping);
     return result;
 }
 

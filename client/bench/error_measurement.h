@@ -20,10 +20,11 @@ namespace terray {
 struct ErrorProtocol {
     int width = 640;
     int height = 360;
-    int frames = 8;           ///< spread evenly over the flight, ends included
-    int64_t pixels = 20'000;  ///< of each frame held against the truth; 0: all
-    int repeats = 5;          ///< of the timed frames, after one untimed round
-    int supersampling = 2;    ///< of reference pictures, samples along a pixel's side
+    int frames = 8;               ///< spread evenly over the flight, ends included
+    int64_t pixels = 20'000;      ///< of each frame held against the truth; 0: all
+    int repeats = 5;              ///< of the timed frames, after one untimed round
+    int supersampling = 2;        ///< of reference pictures, samples along a pixel's side
+    double framesPerSecond = 30;  ///< of the flight: how far apart frames are that follow each other
 };
 
 /// What a setting came to.
@@ -39,9 +40,13 @@ struct ErrorResult {
     Spread depthRelative;
     Spread flip;                 ///< over the frames' means
     std::optional<double> psnr;  ///< mean over frames that differ; none: all pictures are the reference's
-    uint64_t nodes = 0;          ///< of all frames
-    uint64_t lacking = 0;        ///< tiles that a frame wanted and memory did not hold, over all frames
-    uint64_t gpuBytes = 0;       ///< allocated for tiles, at the end
+    /// What changes in the picture from a frame to the next beside the motion: FLIP between the two, mean over the
+    /// picture, less the same of the finest level. Over pairs; detail that pops in makes it greater, missing detail
+    /// less.
+    Spread popping;
+    uint64_t nodes = 0;     ///< of all frames
+    uint64_t lacking = 0;   ///< tiles that a frame wanted and memory did not hold, over all frames
+    uint64_t gpuBytes = 0;  ///< allocated for tiles, at the end
 };
 
 /// The errors of a frame's pixels, for maps; all of its pixels.
@@ -57,13 +62,17 @@ class ErrorMeasurement {
     ErrorMeasurement(const TileSource& source, const ShaderLibrary& shaders, const Flight& flight,
                      const ErrorProtocol& protocol);
 
-    /// Draws the reference pictures; first of all, and again for other scenes (sun, photo). Throws as Engine does.
+    /// Draws the reference pictures, and the finest level's pairs of frames; first of all, and again for other scenes
+    /// (sun, photo). Throws as Engine does.
     void drawReferences(const EngineOptions& base);
     /// @param take  null: no maps. Not null: the protocol asks for all pixels.
     [[nodiscard]] ErrorResult measure(const ErrorSetting& setting, const TakeErrors& take);
 
   private:
+    [[nodiscard]] double secondsOf(int frame) const;
     [[nodiscard]] Camera cameraOf(int frame) const;
+    /// Of the frame that follows on the flight's clock; at its end, of the one before.
+    [[nodiscard]] Camera cameraBeside(int frame) const;
     void time(Engine& engine, ErrorResult& result) const;
 
     const TileSource& source_;
@@ -73,6 +82,7 @@ class ErrorMeasurement {
     DatasetHeights heights_;
     GroundCaster truth_;
     std::vector<Grid<Rgba>> references_;
+    std::vector<double> finestChanges_;  ///< FLIP from each frame to the one beside it
 };
 
 /// A picture of supersampling^2 pixels for each, averaged in linear light.

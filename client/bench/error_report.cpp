@@ -64,6 +64,8 @@ std::vector<Column> columnsOf(const ErrorResult& result) {
     columns.push_back({"flip_mean", text(result.flip.mean)});
     columns.push_back({"flip_max", text(result.flip.max)});
     columns.push_back({"psnr_db", result.psnr ? text(*result.psnr) : ""});
+    columns.push_back({"popping_mean", text(result.popping.mean)});
+    columns.push_back({"popping_max", text(result.popping.max)});
     columns.push_back({"nodes", std::to_string(result.nodes)});
     columns.push_back({"lacking", std::to_string(result.lacking)});
     columns.push_back({"gpu_bytes", std::to_string(result.gpuBytes)});
@@ -101,6 +103,7 @@ Json toJson(const ErrorResult& result) {
                                  {"covers_sky", countJson(result.coversSky, result.pixels)},
                                  {"flip", spreadJson(result.flip)},
                                  {"psnr_db", Json::Object{{"mean", result.psnr ? Json(*result.psnr) : Json()}}},
+                                 {"popping", spreadJson(result.popping)},
                                  {"nodes", Json::Object{{"sum", result.nodes}}},
                                  {"lacking", Json::Object{{"sum", result.lacking}}},
                                  {"gpu_bytes", Json::Object{{"last", result.gpuBytes}}}}},
@@ -112,11 +115,11 @@ std::string lineOf(const ErrorResult& result) {
     std::snprintf(
         line, sizeof(line),
         "%-20s %8.2f ms (%.2f .. %.2f); error %.3f px median, %.3f p95, %.3f p99, %.2f max; see-through %llu, "
-        "covers sky %llu of %llu; FLIP %.4f%s",
+        "covers sky %llu of %llu; FLIP %.4f, popping %.4f%s",
         result.name.c_str(), medianOf(result.frameMs), result.frameMs.front(), result.frameMs.back(),
         result.errorPixels.median, result.errorPixels.p95, result.errorPixels.p99, result.errorPixels.max,
         static_cast<unsigned long long>(result.seeThrough), static_cast<unsigned long long>(result.coversSky),
-        static_cast<unsigned long long>(result.pixels), result.flip.mean,
+        static_cast<unsigned long long>(result.pixels), result.flip.mean, result.popping.max,
         result.lacking > 0 ? "; tiles lack: give more --gpu-memory" : "");
     return line;
 }

@@ -23,6 +23,7 @@ class Sweep {
         settings_.push_back({curve, name, base_});
         change(settings_.back().options);
     }
+    [[nodiscard]] ErrorSetting& last() { return settings_.back(); }
     [[nodiscard]] std::vector<ErrorSetting> take() { return std::move(settings_); }
 
   private:
@@ -64,27 +65,57 @@ void sweepMethod(Sweep& sweep) {
                   [&](EngineOptions& options) { options.render.method = entry.method; });
 }
 
+void sweepPhoto(Sweep& sweep) {
+    for (const double tolerance : {0.5, 1.0, 2.0, 4.0, 8.0})
+        sweep.add("photo", "photo " + Json(tolerance).dump() + " px",
+                  [&](EngineOptions& options) { options.selection.imageryTolerance = Pixels(tolerance); });
+}
+
+void sweepQuantum(Sweep& sweep, double stored) {
+    const auto finest = [](EngineOptions& options) {
+        options.render.surface = Surface::bilinear;
+        options.selection.tolerance = Pixels(0.25);
+    };
+    sweep.add("quantum", "quantum as stored", finest);
+    for (const double quantum : {0.05, 0.2, 1.0, 2.0, 5.0, 10.0}) {
+        if (quantum <= stored) continue;
+        sweep.add("quantum", "quantum " + Json(quantum).dump() + " m", finest);
+        sweep.last().quantum = quantum;
+    }
+}
+
+struct NamedSweep {
+    const char* name;
+    void (*add)(Sweep& sweep, double storedQuantum);
+};
+constexpr NamedSweep kSweeps[] = {{"tolerance", [](Sweep& sweep, double) { sweepTolerance(sweep); }},
+                                  {"surface", [](Sweep& sweep, double) { sweepSurface(sweep); }},
+                                  {"launch", [](Sweep& sweep, double) { sweepLaunch(sweep); }},
+                                  {"anisotropy", [](Sweep& sweep, double) { sweepAnisotropy(sweep); }},
+                                  {"photo", [](Sweep& sweep, double) { sweepPhoto(sweep); }},
+                                  {"method", [](Sweep& sweep, double) { sweepMethod(sweep); }},
+                                  {"quantum", sweepQuantum}};
+
 }  // namespace
 
-std::vector<ErrorSetting> settingsOf(const std::string& name, const EngineOptions& base) {
+std::vector<ErrorSetting> settingsOf(const std::string& name, const EngineOptions& base, double storedQuantum) {
     Sweep sweep(base);
     if (name.empty()) {
         sweep.add("as given", "as given", [](EngineOptions&) {});
-    } else if (name == "tolerance") {
-        sweepTolerance(sweep);
-    } else if (name == "surface") {
-        sweepSurface(sweep);
-    } else if (name == "launch") {
-        sweepLaunch(sweep);
-    } else if (name == "anisotropy") {
-        sweepAnisotropy(sweep);
-    } else if (name == "method") {
-        sweepMethod(sweep);
-    } else {
-        throw Error(ExitCode::usage,
-                    "--sweep: found \"" + name + "\", expected tolerance, surface, launch, anisotropy or method");
+        return sweep.take();
     }
-    return sweep.take();
+    for (const NamedSweep& known : kSweeps) {
+        if (name != known.name) continue;
+        known.add(sweep, storedQuantum);
+        return sweep.take();
+    }
+    throw Error(ExitCode::usage, "--sweep: found \"" + name + "\", expected one of " + sweepNames());
+}
+
+std::string sweepNames() {
+    std::string names;
+    for (const NamedSweep& sweep : kSweeps) names += (names.empty() ? "" : "|") + std::string(sweep.name);
+    return names;
 }
 
 }  // namespace terray

@@ -7,6 +7,7 @@
 
 #include "client/bench/bench.h"
 #include "client/bench/error_measurement.h"
+#include "client/bench/requantised_source.h"
 #include "common/json.h"
 #include "tests/common/temporary_directory.h"
 #include "tests/support/analytic_dataset.h"
@@ -101,6 +102,55 @@ TEST_F(ErrorTest, TheMethodSweepMeasuresEachOnce) {
     EXPECT_EQ(at(setting("march"), "error_px", "max"), at(setting("pyramid"), "error_px", "max")) << "both are exact";
 }
 
+TEST_F(ErrorTest, NothingPopsAtTheFinestLevelAndDetailPopsInAtCoarseOnes) {
+    const std::vector<std::string> finest{"--surface", "bilinear", "--tolerance", "0.25", "--fps", "20"};
+    ASSERT_EQ(measure(finest), ExitCode::ok) << message_;
+    EXPECT_EQ(at(setting("as given"), "popping", "mean"), 0);
+    EXPECT_EQ(at(setting("as given"), "popping", "max"), 0);
+    // A tour of 2 s at 1 frame a second: between frames whole tiles change their level.
+    ASSERT_EQ(measure({"--surface", "bilinear", "--tolerance", "30", "--fps", "1"}), ExitCode::ok) << message_;
+    EXPECT_NE(at(setting("as given"), "popping", "max"), 0);
+    EXPECT_EQ(measure({"--fps", "0"}), ExitCode::usage);
+}
+
+TEST_F(ErrorTest, CoarserStepsOfHeightsCostWhatTheyRoundAway) {
+    ASSERT_EQ(measure({"--sweep", "quantum"}), ExitCode::ok) << message_;
+    const auto worst = [&](const std::string& name) { return at(setting(name), "error_px", "p99"); };
+    EXPECT_GT(worst("quantum 5 m"), 2 * worst("quantum 1 m"));
+    EXPECT_GT(worst("quantum 1 m"), 2 * worst("quantum 0.2 m"));
+    EXPECT_GT(worst("quantum 0.2 m"), worst("quantum as stored"));
+}
+
+TEST(RequantisedSource, RoundsEachHeightToTheStepAndKeepsRecordsTrue) {
+    const AnalyticDataset fine({.finestLevel = 2});
+    const double quantum = 0.7;
+    const RequantisedSource coarse(fine, quantum);
+    EXPECT_EQ(coarse.metadata().quantum, quantum);
+    EXPECT_NE(coarse.contentHash(), fine.contentHash());
+    for (const TileId id : {TileId{0, 0, 0}, TileId{1, 1, 0}, TileId{2, 3, 2}}) {
+        const HeightTile before = decodeHeightTile(*fine.read(TileLayer::heights, id), id).value();
+        const HeightTile after = decodeHeightTile(*coarse.read(TileLayer::heights, id), id).value();
+        EXPECT_EQ(after.encoding.metresPerCode(), quantum);
+        const auto old = before.codes.cells();
+        double worst = 0;
+        for (size_t n = 0; n < old.size(); ++n) {
+            const uint16_t code = after.codes.cells()[n];
+            ASSERT_EQ(code == kNoSurface, old[n] == kNoSurface);
+            if (code == kNoSurface) continue;
+            worst = std::max(worst, std::abs(before.encoding.height(old[n]) - after.encoding.height(code)));
+        }
+        EXPECT_LE(worst, quantum / 2 + 1e-9);
+        EXPECT_GT(worst, 0.45 * quantum);
+        EXPECT_GE(after.record.error, before.record.error + quantum / 2);
+        EXPECT_EQ(after.record, measureRecord(after.codes, after.encoding, after.record.error));
+        for (uint32_t quadrant = 0; quadrant < 4 && id.level < 2; ++quadrant) {
+            const TileId child = id.child(quadrant);
+            const HeightTile below = decodeHeightTile(*coarse.read(TileLayer::heights, child), child).value();
+            EXPECT_EQ(after.children[quadrant], below.record);
+        }
+    }
+}
+
 TEST_F(ErrorTest, WritesItsTableAsDocumented) {
     ASSERT_EQ(measure({"--sweep", "launch"}), ExitCode::ok) << message_;
     std::stringstream table(textOf(own_ / "run" / "errors.csv"));
@@ -139,7 +189,7 @@ TEST_F(ErrorTest, WritesMapsAndRemovesThemByForce) {
 
 TEST_F(ErrorTest, BadUseIsRefused) {
     EXPECT_EQ(measure({"--sweep", "colour"}), ExitCode::usage);
-    EXPECT_NE(message_.find("expected tolerance"), std::string::npos) << message_;
+    EXPECT_NE(message_.find("expected one of tolerance|"), std::string::npos) << message_;
     EXPECT_EQ(measure({"--supersampling", "9"}), ExitCode::usage);
     std::ofstream(own_ / "edits.json")
         << R"({"format":"terray-edits","version":1,"edits":[{"kind":"crater","at":{"x_m":0,"y_m":0},"radius_m":9,"depth_m":1}]})";
