@@ -75,7 +75,15 @@ class ByteSource {
 /// A local file read by pread. Fails when it cannot be opened.
 [[nodiscard]] Result<std::unique_ptr<ByteSource>> openFileSource(const std::filesystem::path& path);
 
-/// Reads an archive. Thread-safe after open(); leaf directories are cached (bounded).
+/// Some bytes of an archive.
+struct ByteRange {
+    uint64_t offset = 0;
+    uint64_t length = 0;
+    bool operator==(const ByteRange&) const = default;
+};
+
+/// Reads an archive. Thread-safe after open(); leaf directories are read when a tile beneath them is first asked for,
+/// and cached (bounded).
 class PmtilesReader {
   public:
     /// Checks the header and the root directory against the source's size: a truncated archive fails here.
@@ -89,6 +97,9 @@ class PmtilesReader {
     [[nodiscard]] Result<std::string> metadata() const;
     /// The stored bytes of a tile; no value inside the optional when the archive has no such tile.
     [[nodiscard]] Result<std::optional<Bytes>> read(const TileId& id) const;
+    class Lookup;
+    /// Begins the way to a tile without reading anything; the reader must outlive the answer.
+    [[nodiscard]] Result<Lookup> lookUp(const TileId& id) const;
     /// Calls visit(tile, offset in the file, length) for every tile in Hilbert order, run by run expanded; stops at the
     /// first failure. Offsets are checked against the archive's tile section.
     [[nodiscard]] Result<void> forEach(const std::function<void(const TileId&, uint64_t, uint32_t)>& visit) const;
@@ -98,6 +109,29 @@ class PmtilesReader {
     struct State;
     explicit PmtilesReader(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
+};
+
+/// The way from an archive's root directory to a tile, one piece at a time, for whoever fetches the bytes himself and
+/// cannot wait for them. What the reader's cache holds is not asked for. One thread.
+class PmtilesReader::Lookup {
+  public:
+    /// The bytes of the archive that are needed next; none: the archive has no such tile.
+    [[nodiscard]] const std::optional<ByteRange>& range() const { return range_; }
+    /// Whether they are a leaf directory on the way, to be handed to takeLeaf(); else they are the tile.
+    [[nodiscard]] bool isLeaf() const { return isLeaf_; }
+    /// Goes on with the bytes that range() named. Fails when they are no directory, as a damaged one.
+    [[nodiscard]] Result<void> takeLeaf(ByteView bytes);
+
+  private:
+    friend class PmtilesReader;
+    Lookup(const State& state, uint64_t tile) : state_(&state), tile_(tile) {}
+    [[nodiscard]] Result<void> descend(const std::vector<PmtilesEntry>& directory);
+
+    const State* state_;
+    uint64_t tile_;
+    int leafLevel_ = 0;
+    std::optional<ByteRange> range_;
+    bool isLeaf_ = false;
 };
 
 /// Options of both ways to write an archive.

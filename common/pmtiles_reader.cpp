@@ -94,36 +94,59 @@ struct PmtilesReader::State {
         return {};
     }
 
-    /// Bytes of a directory or the metadata, unpacked.
-    [[nodiscard]] Result<Bytes> readInternal(uint64_t offset, uint64_t length) const {
+    [[nodiscard]] Result<void> checkInternalSize(uint64_t length) const {
         if (length > kMaxInternalBytes)
             return damaged("a directory or the metadata has " + std::to_string(length) + " bytes, more than the " +
                            std::to_string(kMaxInternalBytes) + " that this build reads");
-        auto bytes = source->read(offset, length);
-        if (!bytes.ok() || header.internalCompression == PmtilesCompression::none) return bytes;
+        return {};
+    }
+
+    /// The stored bytes of a directory or the metadata, unpacked.
+    [[nodiscard]] Result<Bytes> unpack(Bytes stored) const {
+        if (header.internalCompression == PmtilesCompression::none) return stored;
         if (header.internalCompression != PmtilesCompression::gzip)
             return damaged(
                 "its directories are compressed by a method that this build does not read (only gzip or none)");
-        auto unpacked = gzipDecompress(*bytes, kMaxInternalBytes);
+        auto unpacked = gzipDecompress(stored, kMaxInternalBytes);
         return unpacked.ok() ? std::move(unpacked) : damaged(unpacked.failure().message);
     }
 
-    [[nodiscard]] Result<Directory> readDirectory(uint64_t offset, uint64_t length) const {
-        const auto bytes = readInternal(offset, length);
+    /// Bytes of a directory or the metadata, unpacked.
+    [[nodiscard]] Result<Bytes> readInternal(uint64_t offset, uint64_t length) const {
+        if (auto result = checkInternalSize(length); !result.ok()) return result.failure();
+        auto bytes = source->read(offset, length);
+        return bytes.ok() ? unpack(*std::move(bytes)) : std::move(bytes);
+    }
+
+    [[nodiscard]] Result<Directory> parseDirectory(const Result<Bytes>& bytes) const {
         if (!bytes.ok()) return bytes.failure();
         auto directory = decodePmtilesDirectory(*bytes);
         return directory.ok() ? std::move(directory) : damaged(directory.failure().message);
     }
 
-    [[nodiscard]] Result<std::shared_ptr<const Directory>> readLeaf(const PmtilesEntry& entry) const {
+    /// Where a leaf directory lies in the archive.
+    [[nodiscard]] Result<ByteRange> leafRange(const PmtilesEntry& entry) const {
         if (entry.offset > header.leavesLength || entry.length > header.leavesLength - entry.offset)
             return damaged("a leaf directory lies outside its section");
-        if (auto cached = leaves.find(entry.offset)) return cached;
-        auto directory = readDirectory(header.leavesOffset + entry.offset, entry.length);
+        if (auto result = checkInternalSize(entry.length); !result.ok()) return result.failure();
+        return ByteRange{header.leavesOffset + entry.offset, entry.length};
+    }
+
+    /// Parses a leaf directory that lies at `offset` of the archive, and keeps it.
+    [[nodiscard]] Result<std::shared_ptr<const Directory>> keepLeaf(uint64_t offset, Bytes stored) const {
+        auto directory = parseDirectory(unpack(std::move(stored)));
         if (!directory.ok()) return directory.failure();
         auto shared = std::make_shared<const Directory>(*std::move(directory));
-        leaves.insert(entry.offset, shared);
+        leaves.insert(offset, shared);
         return shared;
+    }
+
+    [[nodiscard]] Result<std::shared_ptr<const Directory>> readLeaf(const PmtilesEntry& entry) const {
+        const auto range = leafRange(entry);
+        if (!range.ok()) return range.failure();
+        if (auto cached = leaves.find(range->offset)) return cached;
+        auto stored = source->read(range->offset, range->length);
+        return stored.ok() ? keepLeaf(range->offset, *std::move(stored)) : stored.failure();
     }
 
     [[nodiscard]] Result<void> checkTile(const PmtilesEntry& entry) const {
@@ -181,7 +204,7 @@ Result<PmtilesReader> PmtilesReader::open(std::unique_ptr<ByteSource> source) {
     if (!header.ok()) return state->damaged(header.failure().message);
     state->header = *header;
     if (auto result = state->checkSections(); !result.ok()) return result.failure();
-    auto root = state->readDirectory(header->rootOffset, header->rootLength);
+    auto root = state->parseDirectory(state->readInternal(header->rootOffset, header->rootLength));
     if (!root.ok()) return root.failure();
     state->root = *std::move(root);
     return PmtilesReader(std::move(state));
@@ -201,21 +224,53 @@ Result<std::string> PmtilesReader::metadata() const {
 }
 
 Result<std::optional<Bytes>> PmtilesReader::read(const TileId& id) const {
-    const uint64_t tile = hilbertId(id);
-    std::shared_ptr<const Directory> leaf;
-    const PmtilesEntry* entry = findEntry(state_->root, tile);
-    for (int leafLevel = 0; entry != nullptr && entry->runLength == 0; ++leafLevel) {
-        if (leafLevel == kMaxLeafLevels) return state_->damaged("leaf directories are nested too deeply");
-        auto next = state_->readLeaf(*entry);
-        if (!next.ok()) return next.failure();
-        leaf = *std::move(next);
-        entry = findEntry(*leaf, tile);
+    auto lookup = lookUp(id);
+    while (lookup.ok() && lookup->range()) {
+        auto bytes = state_->source->read(lookup->range()->offset, lookup->range()->length);
+        if (!bytes.ok()) return bytes.failure();
+        if (!lookup->isLeaf()) return std::optional<Bytes>(*std::move(bytes));
+        if (auto result = lookup->takeLeaf(*bytes); !result.ok()) return result.failure();
     }
-    if (entry == nullptr) return std::optional<Bytes>();
-    if (auto result = state_->checkTile(*entry); !result.ok()) return result.failure();
-    auto bytes = state_->source->read(state_->header.tilesOffset + entry->offset, entry->length);
-    if (!bytes.ok()) return bytes.failure();
-    return std::optional<Bytes>(*std::move(bytes));
+    if (!lookup.ok()) return lookup.failure();
+    return std::optional<Bytes>();
+}
+
+Result<PmtilesReader::Lookup> PmtilesReader::lookUp(const TileId& id) const {
+    Lookup lookup(*state_, hilbertId(id));
+    if (auto result = lookup.descend(state_->root); !result.ok()) return result.failure();
+    return lookup;
+}
+
+Result<void> PmtilesReader::Lookup::takeLeaf(ByteView bytes) {
+    TERRAY_CHECK(isLeaf_ && range_);
+    const auto leaf = state_->keepLeaf(range_->offset, Bytes(bytes.begin(), bytes.end()));
+    return leaf.ok() ? descend(**leaf) : leaf.failure();
+}
+
+/// As far down from `directory` as cached leaves lead.
+Result<void> PmtilesReader::Lookup::descend(const Directory& directory) {
+    std::shared_ptr<const Directory> leaf;  // keeps the entry's directory alive
+    const PmtilesEntry* entry = findEntry(directory, tile_);
+    while (entry != nullptr && entry->runLength == 0) {
+        if (leafLevel_ == kMaxLeafLevels) return state_->damaged("leaf directories are nested too deeply");
+        ++leafLevel_;
+        const auto range = state_->leafRange(*entry);
+        if (!range.ok()) return range.failure();
+        auto cached = state_->leaves.find(range->offset);
+        if (!cached) {
+            range_ = *range;
+            isLeaf_ = true;
+            return {};
+        }
+        leaf = std::move(cached);
+        entry = findEntry(*leaf, tile_);
+    }
+    range_.reset();
+    isLeaf_ = false;
+    if (entry == nullptr) return {};
+    if (auto result = state_->checkTile(*entry); !result.ok()) return result;
+    range_ = ByteRange{state_->header.tilesOffset + entry->offset, entry->length};
+    return {};
 }
 
 Result<void> PmtilesReader::forEach(const State::Visit& visit) const {
