@@ -38,6 +38,7 @@ using dvec4 = glm::dvec4;
 #define TERRAY_BUFFER_SHADOW_CELLS 4  // SSBO: ShadowCell[]
 #define TERRAY_BUFFER_SHADOW 5        // UBO: ShadowParameters
 #define TERRAY_BUFFER_SHADING 7       // UBO: ShadingParameters
+#define TERRAY_BUFFER_METHOD 8        // UBO: MethodParameters
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
 #define TERRAY_UNIFORM_ORIGIN 0  // locations of overlays, see overlay.vert and overlay.frag
 #define TERRAY_UNIFORM_GROWTH 1
@@ -140,6 +141,11 @@ struct ShadingParameters {
     vec4 heights;  // x: lowest, y: highest of the dataset, z: between contour lines, metres; w: tolerance of errors, pixels
 };
 
+// What methods other than the pyramid's search by (MethodOptions); each reads its own.
+struct MethodParameters {
+    vec4 linear;  // x: least, y: most samples of a ray's way through a box; z: halvings
+};
+
 // In double, so that a sample's height depends on its place in the dataset and not on the tile that holds it.
 #if defined(__cplusplus) || defined(TERRAY_EDITS)
 // One edit, see common/terrain_edit.h.
@@ -160,6 +166,7 @@ struct EditedTileParameters {
 static_assert(sizeof(EditParameters) == 2 * 32);
 static_assert(sizeof(EditedTileParameters) == 3 * 32);
 static_assert(sizeof(ShadingParameters) == 16);
+static_assert(sizeof(MethodParameters) == 16);
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);

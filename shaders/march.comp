@@ -1,7 +1,7 @@
 // march.comp: casts all rays in one dispatch. Each thread marches one ray through the nodes of its bin, which come front to
 // back, until the first hit (design, section 5).
 #include "bins.glsl"
-#include "march.glsl"
+#include "method.glsl"
 
 layout(local_size_x = TERRAY_GROUP_SIDE, local_size_y = TERRAY_GROUP_SIDE) in;
 

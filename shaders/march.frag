@@ -1,6 +1,6 @@
 // march.frag: casts the rays of one node. Drawn over the back faces of its box; a pixel that the ID pass did not give to
 // this node is left before the loop (paper 001, section 3.4).
-#include "march.glsl"
+#include "method.glsl"
 
 layout(location = TERRAY_UNIFORM_NODE) uniform uint nodeIndex;
 #if TERRAY_OCCLUSION

@@ -22,12 +22,7 @@ const int kMaxSteps = 1024 + 1032 + 512 * 6 + 1;
 const int kMaxSteps = 1024 + 1032 + 1;
 #endif
 
-struct March {
-    bool hit;
-    bool exhausted;  // out of steps
-    int steps;
-    float t;         // view depth of the hit, metres
-};
+#include "march_result.glsl"
 
 March marchNode(NodeParameters node, vec3 direction) {
     March march = March(false, false, 0, 0.0);

@@ -53,7 +53,7 @@ EngineOptions finestOf(const EngineOptions& base) {
     finest.selection.tolerance = Pixels(0.25);
     finest.selection.imageryTolerance = Pixels(1);
     finest.render.surface = Surface::bilinear;
-    finest.render.method = Method::pyramid;
+    finest.render.method = {};
     finest.render.anisotropy = 16;
     return finest;
 }

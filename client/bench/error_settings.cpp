@@ -60,9 +60,14 @@ void sweepAnisotropy(Sweep& sweep) {
 }
 
 void sweepMethod(Sweep& sweep) {
-    for (const MethodEntry& entry : kMethods)
-        sweep.add(std::string(entry.name), std::string(entry.name),
-                  [&](EngineOptions& options) { options.render.method = entry.method; });
+    const auto add = [&](const std::string& text) {
+        const MethodOptions method = methodNamed(text);
+        sweep.add(std::string(entryOf(method.method).name), text,
+                  [&](EngineOptions& options) { options.render.method = method; });
+    };
+    for (const MethodEntry& entry : kMethods) add(std::string(entry.name));
+    for (const int samples : {8, 16, 32, 64, 256})
+        add("linear:least=" + std::to_string(samples) + ",most=" + std::to_string(4 * samples));
 }
 
 void sweepPhoto(Sweep& sweep) {

@@ -22,7 +22,7 @@ struct ErrorSetting {
 ///     surface     auto, columns, bilinear
 ///     launch      raster, compute
 ///     anisotropy  1, 2, 4, 8, 16
-///     method      each of kMethods
+///     method      each of kMethods, over the numbers that it searches by
 ///     photo       tolerance of the photo from 1/2 to 8 pixels, by doubling
 ///     quantum     heights as stored and in coarser steps from 5 cm to 10 m, bilinear at tolerance 1/4 pixel
 ///

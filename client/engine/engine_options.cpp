@@ -105,12 +105,6 @@ Shading shadingNamed(const std::string& name) {
     refuse("--shading", name, "one of " + namesOf(kShadingModes, ", "));
 }
 
-Method methodNamed(const std::string& name) {
-    for (const MethodEntry& entry : kMethods)
-        if (entry.name == name) return entry.method;
-    refuse("--method", name, "one of " + namesOf(kMethods, ", "));
-}
-
 EarthShape earthShapeNamed(const std::string& name) {
     if (name == "auto") return EarthShape::automatic;
     if (name == "flat") return EarthShape::flat;
@@ -150,7 +144,9 @@ void EngineCommandLine::declare(CommandLine& line) {
                 "11 km at 720 rows, and only with a coordinate system (auto)");
     line.option("--refraction", refraction_, "K",
                 "by which part of the earth's curvature air bends light, -5 to 0.99; 0: none (0.13)");
-    line.option("--method", method_, namesOf(kMethods, "|"), "how the visible surface is found (pyramid)");
+    line.option("--method", method_, "NAME[:KEY=VALUE,...]",
+                "how the visible surface is found: " + namesOf(kMethods, "|") +
+                    "; client/README.md has the numbers that each may be given (pyramid)");
     line.option("--shadows", shadows_, "on|off", "cast by the ground, tiles outside the picture included (off)");
     line.option("--sun-diameter", sunDiameter_, "DEGREES",
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");

@@ -89,9 +89,6 @@ class EngineCommandLine {
 /// The mode of kShadingModes that has this name. Throws Error(usage) on anything else.
 [[nodiscard]] Shading shadingNamed(const std::string& name);
 
-/// The method of kMethods that has this name. Throws Error(usage) on anything else.
-[[nodiscard]] Method methodNamed(const std::string& name);
-
 /// The surface that "auto", "columns" or "bilinear" names. Throws Error(usage) on anything else.
 [[nodiscard]] Surface surfaceNamed(const std::string& name);
 

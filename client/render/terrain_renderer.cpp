@@ -87,7 +87,7 @@ void TerrainRenderer::describeNodes(const View& view, std::span<const DrawNode> 
         }
         source.bilinear = options.surface == Surface::bilinear ||
                           (options.surface == Surface::automatic && magnified(node, tiling_, view));
-        source.pyramid = options.method != Method::march;
+        source.pyramid = options.method.method != Method::march;
         source.castsShadow = options.shadows.has_value();
         drawn_.push_back(node);
         nodes_.push_back(nodeParameters(node, source, tiling_, view));
@@ -149,6 +149,17 @@ void TerrainRenderer::bindShading(const RenderOptions& options) {
     }
     glNamedBufferSubData(shadingBuffer_.name(), 0, sizeof(parameters), &parameters);
     glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_SHADING, shadingBuffer_.name());
+}
+
+void TerrainRenderer::bindMethod(const MethodOptions& options) {
+    if (entryOf(options.method).define.empty()) return;
+    const interop::MethodParameters parameters = methodParameters(options);
+    if (!methodBuffer_) {
+        methodBuffer_ = makeBuffer();
+        glNamedBufferStorage(methodBuffer_.name(), sizeof(parameters), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    }
+    glNamedBufferSubData(methodBuffer_.name(), 0, sizeof(parameters), &parameters);
+    glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_METHOD, methodBuffer_.name());
 }
 
 /// Steps that were counted into images, as a texture for the resolve pass.
@@ -230,7 +241,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     features.sky = options.sky;
     features.air = options.visualRange.has_value();
     features.shading = options.shading.mode;
-    features.method = options.method;
+    features.method = options.method.method;
     const ShadingNeeds needs = needsOf(features.shading);
     TERRAY_CHECK(features.statistics || !(needs.steps || needs.shadowSteps));
     TERRAY_CHECK(features.shading != Shading::contours || options.shading.contourInterval > Metres(0));
@@ -244,6 +255,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     }
     glViewport(0, 0, view.width, view.height);
     bindShading(options);
+    bindMethod(options.method);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 
     CastFrame frame{.view = view,
@@ -268,7 +280,7 @@ uint64_t TerrainRenderer::bufferBytes() const {
     return nodeCapacity_ * sizeof(interop::NodeParameters) + sizeof(interop::FrameParameters) +
            RasterLaunch::bufferBytes() + computeLaunch_.bufferBytes() + (sky_ ? sky_->bytes() : 0) +
            (shadowPass_ ? shadowPass_->bufferBytes() : 0) + (shadingBuffer_ ? sizeof(interop::ShadingParameters) : 0) +
-           (overlay_ ? overlay_->bytes() : 0);
+           (methodBuffer_ ? sizeof(interop::MethodParameters) : 0) + (overlay_ ? overlay_->bytes() : 0);
 }
 
 }  // namespace terray

@@ -54,7 +54,7 @@ struct RenderOptions {
     Launch launch = Launch::raster;
     bool occlusion = true;  ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
-    Method method = Method::pyramid;
+    MethodOptions method;
     /// The sky of the sun's elevation, and its light on the ground; off: a gradient, and light as under a sun at 40
     /// degrees. Heights count from the sea (z = 0).
     bool sky = false;
@@ -108,6 +108,7 @@ class TerrainRenderer {
     void uploadFrame(const View& view, const RenderOptions& options);
     void makeSky(const View& view, const RenderOptions& options);
     void bindShading(const RenderOptions& options);
+    void bindMethod(const MethodOptions& options);
     void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
 
     const ShaderLibrary& shaders_;
@@ -127,6 +128,7 @@ class TerrainRenderer {
     std::unique_ptr<SkyTable> sky_;  ///< while RenderOptions::sky is on
     uint64_t nodeCapacity_ = 0;
     GlBuffer shadingBuffer_;                ///< from the first frame that needs it
+    GlBuffer methodBuffer_;                 ///< likewise
     std::unique_ptr<OverlayPass> overlay_;  ///< none without meshes
 };
 

@@ -146,7 +146,7 @@ TEST_F(LaunchTest, ThePyramidSavesStepsAndChangesNothing) {
     for (const Surface surface : {Surface::columns, Surface::bilinear}) {
         EngineOptions options = inspectedOptions(surface);
         const auto with = engineWith(dataset.source(), Launch::raster, options);
-        options.render.method = Method::march;
+        options.render.method.method = Method::march;
         const auto without = engineWith(dataset.source(), Launch::raster, options);
         const Camera camera = cameraAt({6120, -120, dataset.source().metadata().maxHeight + 50}, 30, -65, 60);
         with->drawFrame(camera, true);

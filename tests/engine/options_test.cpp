@@ -116,10 +116,28 @@ TEST(EngineOptions, SkyAndAirAreOffUnlessAskedFor) {
 }
 
 TEST(EngineOptions, EveryMethodHasItsName) {
-    EXPECT_EQ(parsed({}).render.method, Method::pyramid);
+    EXPECT_EQ(parsed({}).render.method, MethodOptions());
     for (const MethodEntry& entry : kMethods)
-        EXPECT_EQ(parsed({"--method", std::string(entry.name)}).render.method, entry.method);
+        EXPECT_EQ(parsed({"--method", std::string(entry.name)}).render.method, MethodOptions{.method = entry.method});
     EXPECT_EQ(refusal({"--method", "magic"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--method", ""}), ExitCode::usage);
+}
+
+TEST(EngineOptions, AMethodsNumbersAreSetBehindItsName) {
+    const MethodOptions linear = parsed({"--method", "linear:least=8,most=32"}).render.method;
+    EXPECT_EQ(linear, (MethodOptions{.method = Method::linear, .least = 8, .most = 32}));
+    EXPECT_EQ(description(linear), "linear:least=8,most=32");
+    EXPECT_EQ(description(MethodOptions()), "pyramid");
+    for (const MethodKey& key : kMethodKeys) {
+        const std::string name(entryOf(key.method).name), start = name + ":" + std::string(key.key) + "=";
+        const double value = MethodOptions().*key.value + 1;
+        EXPECT_EQ(parsed({"--method", start + Json(value).dump()}).render.method.*key.value, value) << start;
+        for (const std::string& wrong : {start, start + "-1", start + "x", start + "1e9", name + ":", name + ":x=1"})
+            EXPECT_EQ(refusal({"--method", wrong}), ExitCode::usage) << wrong;
+    }
+    EXPECT_EQ(refusal({"--method", "pyramid:least=8"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--method", "linear:least=64,most=32"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--method", "linear:halvings=1.5"}), ExitCode::usage);
 }
 
 TEST(EngineOptions, EveryShadingModeHasItsName) {

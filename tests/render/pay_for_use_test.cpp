@@ -120,6 +120,38 @@ TEST_F(PayForUse, OverlaysReadHitsAndWhatTheirMeshIs) {
     EXPECT_EQ(overlay({.sky = true, .air = true}), throughAir);
 }
 
+TEST_F(PayForUse, ThePyramidsProgramIsWhatItIsWhereNoOtherMethodExists) {
+    const ShaderFolder without(ShaderFiles{{"method.glsl", "#include \"march.glsl\"\n"}});
+    const ShaderLibrary bare(without.path());
+    for (const char* root : {"march.frag", "march.comp"})
+        for (const Method method : {Method::pyramid, Method::march}) {
+            const FeatureSet all{
+                .statistics = true, .occlusion = true, .bilinear = true, .curved = true, .method = method};
+            const ShaderDefines defines = all.marching().defines();
+            const std::string code = preprocessed(shaders_.resolve(root, defines).value().text);
+            EXPECT_EQ(code, preprocessed(bare.resolve(root, defines).value().text)) << root;
+            EXPECT_NE(code.find("levelAfter("), std::string::npos) << "the preprocessor lost the program";
+            for (const char* part : {"groundCode", "MethodBuffer", "halved"})
+                EXPECT_EQ(code.find(part), std::string::npos) << root << " holds " << part;
+        }
+}
+
+TEST_F(PayForUse, AMethodReadsHeightsAndWhatItSearchesBy) {
+    for (const std::vector<std::string>& stages :
+         {std::vector<std::string>{"box.vert", "march.frag"}, std::vector<std::string>{"march.comp"}})
+        for (const bool bilinear : {false, true})
+            for (const bool curved : {false, true}) {
+                const FeatureSet pyramid{.bilinear = bilinear, .curved = curved};
+                FeatureSet linear = pyramid;
+                linear.method = Method::linear;
+                const GlProgram program = shaders_.require(stages, linear.defines());
+                EXPECT_EQ(uniformsOf(program), uniforms(stages, pyramid));
+                Names buffers = buffersOf(shaders_.require(stages, pyramid.defines()));
+                buffers.insert("MethodBuffer");
+                EXPECT_EQ(buffersOf(program), buffers);
+            }
+}
+
 const std::vector<std::vector<std::string>> kResolvePrograms = {{"screen.vert", "resolve.frag"}, {"resolve.comp"}};
 
 TEST_F(PayForUse, ThePhotosProgramIsWhatItIsWhereNoShadingModeExists) {

@@ -1,0 +1,127 @@
+// What methods other than the pyramid find, against it on the same tiles: a plane, a step, a cone, procedural ground
+// with holes and level jumps. The pyramid's own answers are tested against oracles (known_answers_test,
+// watertight_test).
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/e2e/scene.h"
+
+namespace terray {
+namespace {
+
+constexpr int kWidth = 160;
+constexpr int kHeight = 120;
+
+/// How a method's picture differs from the pyramid's.
+struct Difference {
+    int64_t ground = 0;      ///< pixels that show ground by the pyramid
+    int64_t seeThrough = 0;  ///< of these, those that do not by the method
+    int64_t coversSky = 0;   ///< the other way round
+    int64_t near = 0;  ///< both show ground, at depths that agree to 1 in 1000 and two samples (a stair of columns)
+    int64_t far = 0;
+
+    Difference& operator+=(const Difference& other) {
+        ground += other.ground;
+        seeThrough += other.seeThrough;
+        coversSky += other.coversSky;
+        near += other.near;
+        far += other.far;
+        return *this;
+    }
+};
+
+class MethodTest : public testing::Test {
+  protected:
+    HeadlessContext context_{HeadlessContext::Options{.debug = true}};
+    ShaderLibrary shaders_;
+    void TearDown() override { EXPECT_EQ(context_.takeDebugMessages(), ""); }
+
+    std::unique_ptr<Engine> engineWith(const TileSource& source, const std::string& method, EngineOptions options) {
+        options.render.method = methodNamed(method);
+        return std::make_unique<Engine>(source, shaders_, options, kWidth, kHeight);
+    }
+
+    static Difference compare(Engine& method, Engine& pyramid, const Camera& camera, double spacing) {
+        EXPECT_EQ(method.drawFrame(camera, true).nodes, pyramid.drawFrame(camera, true).nodes);
+        EXPECT_EQ(raysOutOfSteps(method.targets()), 0);
+        const auto nodes = method.targets().readNodes(), trueNodes = pyramid.targets().readNodes();
+        const auto hits = method.targets().readHits(), trueHits = pyramid.targets().readHits();
+        Difference found;
+        for (int64_t y = 0; y < kHeight; ++y)
+            for (int64_t x = 0; x < kWidth; ++x) {
+                const bool ground = nodes.at(x, y) != 0, trueGround = trueNodes.at(x, y) != 0;
+                found.ground += trueGround ? 1 : 0;
+                found.seeThrough += trueGround && !ground ? 1 : 0;
+                found.coversSky += ground && !trueGround ? 1 : 0;
+                if (!ground || !trueGround) continue;
+                const double t = trueHits.at(x, y).w;
+                (std::abs(hits.at(x, y).w - t) <= 1e-3 * t + 2 * spacing ? found.near : found.far) += 1;
+            }
+        return found;
+    }
+};
+
+/// Methods that look for the surface at samples of the ray, with enough of them for the scenes below.
+const char* const kSearches[] = {"linear:least=1024,most=2048"};
+
+TEST_F(MethodTest, EverySearchFindsAPlaneAndAConeAndAStep) {
+    const HeightFunction plane = [](int64_t, int64_t) { return 250.0f; };
+    const HeightFunction cone = [](int64_t column, int64_t row) {
+        return static_cast<float>(
+            400 - 0.8 * std::hypot(static_cast<double>(column) - 511.5, static_cast<double>(row) - 511.5));
+    };
+    const HeightFunction step = [](int64_t column, int64_t) { return column < 600 ? 100.0f : 300.0f; };
+    for (const HeightFunction& heights : {plane, cone, step}) {
+        const ComputedDataset dataset(heights, {1024, 1024}, 1);
+        for (const Surface surface : {Surface::columns, Surface::bilinear})
+            for (const char* method : kSearches) {
+                const auto engine = engineWith(dataset.source(), method, inspectedOptions(surface));
+                const auto pyramid = engineWith(dataset.source(), "pyramid", inspectedOptions(surface));
+                Difference found;
+                for (const double pitch : {-60.0, -30.0, -12.0})
+                    found += compare(*engine, *pyramid, cameraAt({1300, 4200, 480}, 60, pitch, 60), 1);
+                EXPECT_GT(found.ground, 20000) << method;
+                EXPECT_LE(found.seeThrough + found.coversSky, found.ground / 1000) << method;
+                EXPECT_LE(found.far, found.ground / 200) << method;
+            }
+    }
+}
+
+TEST_F(MethodTest, StreamedGroundWithHolesAndLevelJumpsIsDrawnByEveryMethod) {
+    const HeightFunction holed = [](int64_t column, int64_t row) {
+        if ((column / 100 + row / 100) % 7 == 0) return kNoHeight;
+        const auto x = static_cast<double>(column), y = static_cast<double>(row);
+        return static_cast<float>(200 + 60 * std::sin(x / 40) * std::cos(y / 55) + 4 * std::sin(x / 5));
+    };
+    const ComputedDataset dataset(holed, {2048, 2048}, 2);
+    for (const bool curved : {false, true})
+        for (const MethodEntry& entry : kMethods) {
+            EngineOptions options = inspectedOptions();
+            options.gpuHeightBytes = 6 * 720'000;  // ancestors stand in beside finer tiles
+            if (curved) options.earth = {.shape = EarthShape::curved, .refraction = -200};
+            const auto engine = engineWith(dataset.source(), std::string(entry.name), options);
+            const auto pyramid = engineWith(dataset.source(), "pyramid", options);
+            Difference found;
+            for (const double heading : {20.0, 140.0, 260.0})
+                found += compare(*engine, *pyramid, cameraAt({3000, 3000, 450}, heading, -25, 60), 2);
+            EXPECT_GT(found.ground, 20000) << entry.name;
+            EXPECT_LE(found.seeThrough + found.coversSky, found.ground / 50) << entry.name;
+            EXPECT_LE(found.far, found.ground / 20) << entry.name;
+        }
+}
+
+TEST_F(MethodTest, AFewSamplesMissAWallThatThePyramidHits) {
+    // A wall of one sample, 100 m high: looked at from the side it is thinner than a step.
+    const ComputedDataset wall([](int64_t column, int64_t) { return column == 300 ? 150.0f : 50.0f; }, {600, 600}, 1);
+    const Camera camera = cameraAt({1100, 4700, 120}, 90, 0, 40);
+    const auto pyramid = engineWith(wall.source(), "pyramid", inspectedOptions(Surface::columns));
+    const auto coarse = engineWith(wall.source(), "linear:least=4,most=16", inspectedOptions(Surface::columns));
+    const auto fine = engineWith(wall.source(), "linear:least=512,most=2048", inspectedOptions(Surface::columns));
+    EXPECT_GT(compare(*coarse, *pyramid, camera, 1).seeThrough, 1000);
+    EXPECT_EQ(compare(*fine, *pyramid, camera, 1).seeThrough, 0);
+}
+
+}  // namespace
+}  // namespace terray
