@@ -30,7 +30,8 @@ PROJECT = {
     "client/engine": ["common", "client/stream", "client/overlay", "client/render"],
     "client/view": ["common", "client/stream", "client/render", "client/output", "client/engine"],
     "client/bench": [
-        "common", "common/reference", "client/stream", "client/render", "client/output", "client/engine",
+        "common", "common/reference", "shaders/math", "client/stream", "client/render", "client/output",
+        "client/engine",
     ],
 }
 PROJECT["tests"] = list(PROJECT)  # a test may look at everything

@@ -4,59 +4,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "client/bench/measured_frame.h"
 #include "client/bench/requantised_source.h"
-#include "client/engine/program.h"
-#include "common/error.h"
 #include "common/percentile.h"
 #include "common/reference/pixel_pattern.h"
 #include "common/srgb.h"
 
 namespace terray {
 namespace {
-
-/// Just below the lowest ground, so that rays along it do not end by rounding.
-double floorOf(const DatasetMetadata& metadata) {
-    constexpr double kShareOfRange = 1e-3;
-    return metadata.minHeight - std::max(kShareOfRange * (metadata.maxHeight - metadata.minHeight), metadata.quantum);
-}
-
-FrameReport draw(Engine& engine, const Camera& camera) {
-    throwIfInterrupted();
-    FrameReport report = engine.drawFrame(camera, true);
-    if (!report.failures.empty())
-        throw Error(ExitCode::dataset, "the measurement was broken off: " + report.failures.front() +
-                                           " (terray-preprocess verify lists all damaged tiles)");
-    return report;
-}
-
-std::vector<DrawnPixel> drawnPixels(const Engine& engine, std::span<const glm::ivec2> pixels) {
-    const Grid<uint32_t> nodes = engine.targets().readNodes();
-    const Grid<glm::vec4> hits = engine.targets().readHits();
-    std::vector<DrawnPixel> drawn(pixels.size());
-    for (size_t n = 0; n < pixels.size(); ++n) {
-        const uint32_t node = nodes.at(pixels[n].x, pixels[n].y);
-        if (node == 0) continue;
-        const glm::vec4 hit = hits.at(pixels[n].x, pixels[n].y);
-        drawn[n] = {.ground = true, .depth = hit.w, .place = engine.worldFromHit(engine.nodes()[node - 1], hit)};
-    }
-    return drawn;
-}
-
-double meanFlip(GridView<const Rgba> reference, GridView<const Rgba> test) {
-    const Grid<float> flip = flipOf(reference, test);
-    return spreadOf(flip.cells()).mean;
-}
-
-/// Nothing that the finest samples hold is left out.
-EngineOptions finestOf(const EngineOptions& base) {
-    EngineOptions finest = base;
-    finest.selection.tolerance = Pixels(0.25);
-    finest.selection.imageryTolerance = Pixels(1);
-    finest.render.surface = Surface::bilinear;
-    finest.render.method = {};
-    finest.render.anisotropy = 16;
-    return finest;
-}
 
 /// FLIP and PSNR of all frames.
 class PictureTotals {
@@ -85,7 +40,7 @@ ErrorMeasurement::ErrorMeasurement(const TileSource& source, const ShaderLibrary
       flight_(flight),
       protocol_(protocol),
       heights_(source.metadata(), [&source](const TileId& id) { return source.read(TileLayer::heights, id); }),
-      truth_(heights_, source.metadata().tiling, floorOf(source.metadata())) {}
+      truth_(heights_, source.metadata().tiling, floorBelow(source.metadata())) {}
 
 double ErrorMeasurement::secondsOf(int frame) const {
     return protocol_.frames == 1 ? 0 : flight_.seconds() * frame / (protocol_.frames - 1);
@@ -105,18 +60,18 @@ void ErrorMeasurement::drawReferences(const EngineOptions& base) {
     const int times = protocol_.supersampling;
     references_.clear();
     {
-        Engine engine(source_, shaders_, finestOf(base), protocol_.width * times, protocol_.height * times);
+        Engine engine(source_, shaders_, finestOf(base, 0.25), protocol_.width * times, protocol_.height * times);
         for (int frame = 0; frame < protocol_.frames; ++frame) {
-            draw(engine, cameraOf(frame));
+            drawWhole(engine, cameraOf(frame));
             references_.push_back(averaged(engine.targets().readSrgb().view(), times));
         }
     }
     finestChanges_.clear();
-    Engine engine(source_, shaders_, finestOf(base), protocol_.width, protocol_.height);
+    Engine engine(source_, shaders_, finestOf(base, 0.25), protocol_.width, protocol_.height);
     for (int frame = 0; frame < protocol_.frames; ++frame) {
-        draw(engine, cameraOf(frame));
+        drawWhole(engine, cameraOf(frame));
         const Grid<Rgba> picture = engine.targets().readSrgb();
-        draw(engine, cameraBeside(frame));
+        drawWhole(engine, cameraBeside(frame));
         finestChanges_.push_back(meanFlip(picture.view(), engine.targets().readSrgb().view()));
     }
 }
@@ -136,7 +91,7 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
     PictureTotals pictures;
     std::vector<float> popping;
     for (int frame = 0; frame < protocol_.frames; ++frame) {
-        const FrameReport report = draw(engine, cameraOf(frame));
+        const FrameReport report = drawWhole(engine, cameraOf(frame));
         result.nodes += report.nodes;
         result.lacking += report.wanted;
         result.gpuBytes = report.gpuTiles.heights + report.gpuTiles.maxima + report.gpuTiles.imagery;
@@ -145,7 +100,7 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
         if (take) take(setting.name, frame, errors);
         const Grid<Rgba> picture = engine.targets().readSrgb();
         pictures.add(references_[static_cast<size_t>(frame)].view(), picture.view());
-        draw(engine, cameraBeside(frame));
+        drawWhole(engine, cameraBeside(frame));
         const double change = meanFlip(picture.view(), engine.targets().readSrgb().view());
         popping.push_back(static_cast<float>(change - finestChanges_[static_cast<size_t>(frame)]));
     }
@@ -164,7 +119,8 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
 void ErrorMeasurement::time(Engine& engine, ErrorResult& result) const {
     for (int round = 0; round <= protocol_.repeats; ++round) {
         std::vector<double> frames;
-        for (int frame = 0; frame < protocol_.frames; ++frame) frames.push_back(draw(engine, cameraOf(frame)).frameMs);
+        for (int frame = 0; frame < protocol_.frames; ++frame)
+            frames.push_back(drawWhole(engine, cameraOf(frame)).frameMs);
         std::sort(frames.begin(), frames.end());
         if (round > 0) result.frameMs.push_back(percentile<double>(frames, 50));
     }

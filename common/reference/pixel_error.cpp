@@ -33,13 +33,23 @@ std::optional<double> verticalPixels(const GroundCaster& truth, const View& view
     return glm::length(*drawn - *ground);
 }
 
+/// Whether a ray meets the ground at its side: below its surface, or where rounding puts the place just outside.
+bool onSide(const GroundCaster& truth, const View& view, const glm::dvec3& direction, double depth) {
+    const glm::dvec3 place = view.at(direction, depth);
+    const std::optional<double> height = truth.heightAt(place.x, place.y);
+    // A contact with the surface is off by some last places of the depth, times the ground's slope.
+    constexpr double kShareOfDepth = 1e-6;
+    return !height || place.z / view.exaggeration < *height - kShareOfDepth * depth;
+}
+
 }  // namespace
 
 PixelError pixelError(const GroundCaster& truth, const View& view, const glm::ivec2& pixel, const DrawnPixel& drawn) {
     const glm::dvec3 direction = view.direction(pixel.x + 0.5, pixel.y + 0.5);
     const std::optional<double> depth = truth.meet(view, direction);
     if (!depth || !drawn.ground) {
-        if (depth) return {.kind = PixelError::Kind::seeThrough, .trueDepth = *depth};
+        const bool side = depth && onSide(truth, view, direction, *depth);
+        if (depth) return {.kind = side ? PixelError::Kind::base : PixelError::Kind::seeThrough, .trueDepth = *depth};
         if (!drawn.ground) return {.kind = PixelError::Kind::sky};
         return {.kind = drawn.place.z < truth.floor() ? PixelError::Kind::base : PixelError::Kind::coversSky};
     }

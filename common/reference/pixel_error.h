@@ -25,7 +25,7 @@ struct PixelError {
         sky,         ///< drawn and true
         seeThrough,  ///< sky is drawn, there is ground
         coversSky,   ///< ground is drawn, there is none
-        base,        ///< ground below the caster's floor is drawn: how deep it is solid there is a convention, no error
+        base,  ///< only one of both shows the side of the ground where it ends: how deep it is solid is a convention
     };
     Kind kind = Kind::sky;
     /// How far the drawn point is from the true surface, in pixels: the shorter of two ways, up or down to the ground

@@ -81,6 +81,19 @@ TEST_F(PixelErrorTest, APointOnTheGroundsSideIsOnItsSurface) {
     EXPECT_NEAR(error.pixels, 0.001 / 100 * view_.focalPixels(), 1e-5);  // not the 10 m up to the ground's edge
 }
 
+TEST_F(PixelErrorTest, HowDeepTheGroundsSideReachesIsNoError) {
+    // From the west and below the surface: the side at x = 0 is met 40 m below its edge. Then the surface itself.
+    view_.eye = {-100, -2000, -20};
+    view_.forward = {1, 0, 0};
+    view_.up = {0, 0, 1};
+    EXPECT_EQ(pixelError(truth_, view_, centre_, {}).kind, PixelError::Kind::base);
+    view_.exaggeration = 2;
+    view_.eye.z *= 2;
+    EXPECT_EQ(pixelError(truth_, view_, centre_, {}).kind, PixelError::Kind::base);
+    view_.eye = {100, -2000, 41};
+    EXPECT_EQ(pixelError(truth_, view_, {50, 41}, {}).kind, PixelError::Kind::seeThrough) << "sky within the surface";
+}
+
 TEST_F(PixelErrorTest, GroundAndSkyMayBeMistakenForEachOther) {
     view_.forward = {1, 0, 0};
     view_.up = {0, 0, 1};
