@@ -37,6 +37,7 @@ class FileSource final : public ByteSource {
     }
     uint64_t size() const override { return size_; }
     std::string name() const override { return name_; }
+    std::optional<int> descriptor() const override { return descriptor_; }
 
   private:
     int descriptor_;

@@ -71,6 +71,8 @@ class ByteSource {
     virtual uint64_t size() const = 0;
     /// For messages: a path or an address.
     virtual std::string name() const = 0;
+    /// The open local file behind it, for sendfile; none when it is something else. Closed with the source.
+    virtual std::optional<int> descriptor() const { return {}; }
 };
 /// A local file read by pread. Fails when it cannot be opened.
 [[nodiscard]] Result<std::unique_ptr<ByteSource>> openFileSource(const std::filesystem::path& path);
@@ -95,6 +97,9 @@ class PmtilesReader {
     [[nodiscard]] const PmtilesHeader& header() const;
     /// The JSON metadata, decompressed.
     [[nodiscard]] Result<std::string> metadata() const;
+    /// Where in the file a tile's bytes lie; no value inside the optional when the archive has no such tile. Reads at
+    /// most the leaf directories on the way, and none that is cached.
+    [[nodiscard]] Result<std::optional<ByteRange>> locate(const TileId& id) const;
     /// The stored bytes of a tile; no value inside the optional when the archive has no such tile.
     [[nodiscard]] Result<std::optional<Bytes>> read(const TileId& id) const;
     class Lookup;

@@ -223,16 +223,24 @@ Result<std::string> PmtilesReader::metadata() const {
     return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-Result<std::optional<Bytes>> PmtilesReader::read(const TileId& id) const {
+Result<std::optional<ByteRange>> PmtilesReader::locate(const TileId& id) const {
     auto lookup = lookUp(id);
-    while (lookup.ok() && lookup->range()) {
-        auto bytes = state_->source->read(lookup->range()->offset, lookup->range()->length);
+    while (lookup.ok() && lookup->isLeaf()) {
+        const auto bytes = state_->source->read(lookup->range()->offset, lookup->range()->length);
         if (!bytes.ok()) return bytes.failure();
-        if (!lookup->isLeaf()) return std::optional<Bytes>(*std::move(bytes));
         if (auto result = lookup->takeLeaf(*bytes); !result.ok()) return result.failure();
     }
     if (!lookup.ok()) return lookup.failure();
-    return std::optional<Bytes>();
+    return lookup->range();
+}
+
+Result<std::optional<Bytes>> PmtilesReader::read(const TileId& id) const {
+    const auto range = locate(id);
+    if (!range.ok()) return range.failure();
+    if (!*range) return std::optional<Bytes>();
+    auto bytes = state_->source->read((*range)->offset, (*range)->length);
+    if (!bytes.ok()) return bytes.failure();
+    return std::optional<Bytes>(*std::move(bytes));
 }
 
 Result<PmtilesReader::Lookup> PmtilesReader::lookUp(const TileId& id) const {

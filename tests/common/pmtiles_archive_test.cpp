@@ -323,6 +323,21 @@ TEST(PmtilesReader, ServesSeveralThreads) {
     for (std::thread& thread : threads) thread.join();
 }
 
+TEST(PmtilesReader, LocatesTheBytesThatItReads) {
+    const TemporaryDirectory directory;
+    const Tiles tiles = sampleTiles();
+    write(directory / "a.pmtiles", tiles, {.maxRootBytes = 200, .leafEntries = 16});
+    const auto reader = PmtilesReader::open(openFileSource(directory / "a.pmtiles").value()).value();
+    for (uint64_t hilbert = 0; hilbert < 1400; ++hilbert) {
+        const auto range = reader.locate(*tileFromHilbert(hilbert)).value();
+        const auto tile = tiles.find(hilbert);
+        ASSERT_EQ(tile != tiles.end(), range.has_value()) << hilbert;
+        if (range) {
+            EXPECT_EQ(tile->second, reader.source().read(range->offset, range->length).value()) << hilbert;
+        }
+    }
+}
+
 TEST(FileSource, SaysWhatItCannotOpen) {
     const TemporaryDirectory folder;
     const auto missing = openFileSource(folder / "missing.pmtiles");
