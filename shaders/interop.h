@@ -23,6 +23,7 @@ using dvec4 = glm::dvec4;
 #define TERRAY_UNIT_AIR 6      // sampler3D: the air by direction and distance, see SkyTable
 #define TERRAY_UNIT_SUN_LIGHT 7  // sampler2D: part of the sun that the ground sees
 #define TERRAY_UNIT_STEPS 8    // usampler2D: steps of each pixel's ray, or of its shadow rays
+#define TERRAY_UNIT_METHOD 9   // what a method keeps of each tile (MethodTiles)
 #define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
 #define TERRAY_IMAGE_HIT 1     // image2D rgba32f, compute launch
 #define TERRAY_IMAGE_NODE 2    // uimage2D r32ui, compute launch
@@ -40,6 +41,8 @@ using dvec4 = glm::dvec4;
 #define TERRAY_BUFFER_SHADING 7       // UBO: ShadingParameters
 #define TERRAY_BUFFER_METHOD 8        // UBO: MethodParameters
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
+#define TERRAY_UNIFORM_GEOMETRY 1  // locations of methods that rasterise geometry (GeometryPass)
+#define TERRAY_UNIFORM_INSIDE 2
 #define TERRAY_UNIFORM_ORIGIN 0  // locations of overlays, see overlay.vert and overlay.frag
 #define TERRAY_UNIFORM_GROWTH 1
 #define TERRAY_UNIFORM_COLOUR 2
@@ -144,6 +147,7 @@ struct ShadingParameters {
 // What methods other than the pyramid's search by (MethodOptions); each reads its own.
 struct MethodParameters {
     vec4 linear;  // x: least, y: most samples of a ray's way through a box; z: halvings
+    vec4 hull;    // x: steps, y: more steps, twice as long; z: stride, in tiles, < 0: exponential; w: secant steps
 };
 
 // In double, so that a sample's height depends on its place in the dataset and not on the tile that holds it.
@@ -166,7 +170,7 @@ struct EditedTileParameters {
 static_assert(sizeof(EditParameters) == 2 * 32);
 static_assert(sizeof(EditedTileParameters) == 3 * 32);
 static_assert(sizeof(ShadingParameters) == 16);
-static_assert(sizeof(MethodParameters) == 16);
+static_assert(sizeof(MethodParameters) == 2 * 16);
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);

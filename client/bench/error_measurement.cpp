@@ -81,7 +81,9 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
     std::optional<RequantisedSource> coarser;
     if (setting.quantum > 0) coarser.emplace(source_, setting.quantum);
     const TileSource& source = coarser ? *coarser : source_;
-    Engine engine(source, shaders_, setting.options, protocol_.width, protocol_.height);
+    EngineOptions measured = setting.options;
+    measured.measurePreparation = true;  // of tiles that the untimed round loads
+    Engine engine(source, shaders_, measured, protocol_.width, protocol_.height);
     time(engine, result);
 
     const bool all = protocol_.pixels == 0;
@@ -94,7 +96,9 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
         const FrameReport report = drawWhole(engine, cameraOf(frame));
         result.nodes += report.nodes;
         result.lacking += report.wanted;
-        result.gpuBytes = report.gpuTiles.heights + report.gpuTiles.maxima + report.gpuTiles.imagery;
+        result.gpuBytes =
+            report.gpuTiles.heights + report.gpuTiles.maxima + report.gpuTiles.imagery + report.gpuTiles.method;
+        result.methodBytes = report.gpuTiles.method;
         const auto errors = pixelErrors(truth_, engine.view(), pixels, drawnPixels(engine, pixels));
         totals.add(errors);
         if (take) take(setting.name, frame, errors);
@@ -104,6 +108,9 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
         const double change = meanFlip(picture.view(), engine.targets().readSrgb().view());
         popping.push_back(static_cast<float>(change - finestChanges_[static_cast<size_t>(frame)]));
     }
+    const Preparation& preparation = engine.tiles().preparation();
+    result.pyramidMs = preparation.pyramidMs / static_cast<double>(preparation.tiles);
+    result.prepareMs = preparation.methodMs / static_cast<double>(preparation.tiles);
     result.pixels = totals.pixels;
     result.seeThrough = totals.seeThrough;
     result.coversSky = totals.coversSky;

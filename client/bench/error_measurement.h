@@ -44,9 +44,12 @@ struct ErrorResult {
     /// picture, less the same of the finest level. Over pairs; detail that pops in makes it greater, missing detail
     /// less.
     Spread popping;
-    uint64_t nodes = 0;     ///< of all frames
-    uint64_t lacking = 0;   ///< tiles that a frame wanted and memory did not hold, over all frames
-    uint64_t gpuBytes = 0;  ///< allocated for tiles, at the end
+    uint64_t nodes = 0;        ///< of all frames
+    uint64_t lacking = 0;      ///< tiles that a frame wanted and memory did not hold, over all frames
+    uint64_t gpuBytes = 0;     ///< allocated for tiles, at the end
+    uint64_t methodBytes = 0;  ///< of these, what the method keeps beside heights and pyramids
+    double pyramidMs = 0;      ///< to make a height tile's maximum mipmap, mean
+    double prepareMs = 0;      ///< to make what the method keeps of a tile, mean
 };
 
 /// The errors of a frame's pixels, for maps; all of its pixels.

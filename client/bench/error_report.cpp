@@ -69,6 +69,9 @@ std::vector<Column> columnsOf(const ErrorResult& result) {
     columns.push_back({"nodes", std::to_string(result.nodes)});
     columns.push_back({"lacking", std::to_string(result.lacking)});
     columns.push_back({"gpu_bytes", std::to_string(result.gpuBytes)});
+    columns.push_back({"method_bytes", std::to_string(result.methodBytes)});
+    columns.push_back({"pyramid_ms", text(result.pyramidMs)});
+    columns.push_back({"prepare_ms", text(result.prepareMs)});
     return columns;
 }
 
@@ -106,7 +109,10 @@ Json toJson(const ErrorResult& result) {
                                  {"popping", spreadJson(result.popping)},
                                  {"nodes", Json::Object{{"sum", result.nodes}}},
                                  {"lacking", Json::Object{{"sum", result.lacking}}},
-                                 {"gpu_bytes", Json::Object{{"last", result.gpuBytes}}}}},
+                                 {"gpu_bytes", Json::Object{{"last", result.gpuBytes}}},
+                                 {"method_bytes", Json::Object{{"last", result.methodBytes}}},
+                                 {"pyramid_ms", Json::Object{{"mean", result.pyramidMs}}},
+                                 {"prepare_ms", Json::Object{{"mean", result.prepareMs}}}}},
         {"pixels", result.pixels}};
 }
 

@@ -68,6 +68,9 @@ void sweepMethod(Sweep& sweep) {
     for (const MethodEntry& entry : kMethods) add(std::string(entry.name));
     for (const int samples : {8, 16, 32, 64, 256})
         add("linear:least=" + std::to_string(samples) + ",most=" + std::to_string(4 * samples));
+    for (const char* numbers : {"quads=16", "quads=64", "quads=128", "quads=256,stride=1.6,steps=10,more=20",
+                                "quads=64,stride=0.4,steps=40,more=160", "exponential=1,steps=10"})
+        add("hull:" + std::string(numbers));
 }
 
 void sweepPhoto(Sweep& sweep) {

@@ -76,6 +76,7 @@ void addTiles(std::vector<Column>& columns) {
     add("host_bytes", [](const auto& f) { return count(f.report.pager.hostBytes); });
     add("gpu_heights_bytes", [](const auto& f) { return count(f.report.gpuTiles.heights); });
     add("gpu_maxima_bytes", [](const auto& f) { return count(f.report.gpuTiles.maxima); });
+    add("gpu_method_bytes", [](const auto& f) { return count(f.report.gpuTiles.method); });
     add("gpu_imagery_bytes", [](const auto& f) { return count(f.report.gpuTiles.imagery); });
     add("gpu_targets_bytes", [](const auto& f) { return count(f.report.gpuTargets); });
     add("gpu_buffers_bytes", [](const auto& f) { return count(f.report.gpuBuffers); });

@@ -63,7 +63,9 @@ GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& optio
     return {.heightBudgetBytes = options.gpuHeightBytes,
             .imageryBudgetBytes = imagery ? options.gpuImageryBytes : 0,
             .heightTiles = source.metadata().heightTiles,
-            .imageryTiles = imagery ? source.metadata().imageryTiles : 0};
+            .imageryTiles = imagery ? source.metadata().imageryTiles : 0,
+            .method = options.render.method,
+            .measurePreparation = options.measurePreparation};
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ struct EngineOptions {
     FeatureSet
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;
-    double exaggeration = 1;  ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
+    bool measurePreparation = false;  ///< tiles().preparation(); frames then wait for the GPU at each upload
+    double exaggeration = 1;          ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
     /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.
     std::optional<UtcTime> sunTime;
     std::vector<OverlayMesh> overlay;  ///< drawn into every picture

@@ -186,11 +186,13 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.render.visualRange = visualRangeNamed(visualRange_);
     options.render.anisotropy = static_cast<float>(anisotropy_);
     options.render.photoFilter = photoFilter(photoFilter_);
+    options.render.method = methodNamed(method_);
     options.render.launch = launchNamed(launch_);
+    if (options.render.launch == Launch::compute && entryOf(options.render.method.method).geometry)
+        refuse("--launch", launch_, "auto or raster: --method " + method_ + " rasterises geometry of its own");
     options.render.occlusion = occlusion_ == "on";
     options.render.surface = surfaceNamed(surface_);
     options.earth = {.shape = earthShapeNamed(earth_), .refraction = refraction_};
-    options.render.method = methodNamed(method_);
     if (shadows_ == "on") {
         options.render.shadows = ShadowOptions{.sunDiameter = radiansFromDegrees(sunDiameter_).value(),
                                                .rays = static_cast<int>(shadowRays_)};

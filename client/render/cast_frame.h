@@ -5,6 +5,7 @@
 #include "client/render/feature_set.h"
 #include "client/render/frame_targets.h"
 #include "client/render/gpu_timer.h"
+#include "client/render/method_tiles.h"
 #include "common/view.h"
 #include "shaders/interop.h"
 
@@ -16,7 +17,8 @@ struct CastFrame {
     std::span<const interop::NodeParameters> nodes;  ///< front to back
     FeatureSet features;
     FrameTargets& targets;
-    GpuTimer* timer = nullptr;  ///< may be null
+    GpuTimer* timer = nullptr;                 ///< may be null
+    const MethodTiles* methodTiles = nullptr;  ///< of methods that keep something of each tile
 
     void enter(GpuPass pass) const {
         if (timer != nullptr) timer->enter(pass);

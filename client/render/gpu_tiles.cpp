@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <string>
 
 #include "common/check.h"
@@ -117,7 +118,9 @@ GpuTiles::GpuTiles(const ShaderLibrary& shaders, const GpuTilesOptions& options)
                         : slotCount(options.imageryBudgetBytes, imageryUploadBytes(), options.imageryTiles)),
       heightTexture_(makeHeightArray(heightSlots_.capacity())),
       maximaProgram_(shaders.require({"maxima.comp"}, {{"TERRAY_HEIGHT_APRON", std::to_string(kHeightApron)},
-                                                       {"TERRAY_TILE_CORE", std::to_string(kTileCore)}})) {
+                                                       {"TERRAY_TILE_CORE", std::to_string(kTileCore)}})),
+      methodTiles_(makeMethodTiles(options.method, heightSlots_.capacity(), shaders)),
+      measurePreparation_(options.measurePreparation) {
     if (imagerySlots_.capacity() > 0) imageryTexture_ = makeImageryArray(imagerySlots_.capacity());
 }
 
@@ -137,7 +140,7 @@ GpuTiles::Upload GpuTiles::uploadHeights(const HeightTile& tile, const EditedTil
     glTextureSubImage3D(heightTexture_.name(), 0, 0, 0, static_cast<GLint>(place->slot), kHeightTileSide,
                         kHeightTileSide, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, tile.codes.cells().data());
     if (edited != nullptr) edit(place->slot, tile, *edited);
-    buildMaxima(place->slot);
+    prepare(tile, place->slot);
     if (edited != nullptr && timer != nullptr) timer->enter(GpuPass::upload);
     return {.done = true, .evicted = place->evicted};
 }
@@ -186,6 +189,21 @@ void GpuTiles::buildMaxima(uint32_t slot) {
     }
 }
 
+/// The clock is around glFinish, since a method may work on either processor.
+void GpuTiles::prepare(const HeightTile& tile, uint32_t slot) {
+    const auto timed = [this](double& milliseconds, const auto& work) {
+        if (!measurePreparation_) return work();
+        glFinish();
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        glFinish();
+        milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    };
+    timed(preparation_.pyramidMs, [&] { buildMaxima(slot); });
+    if (methodTiles_) timed(preparation_.methodMs, [&] { methodTiles_->build(tile, slot, heightTexture_.name()); });
+    preparation_.tiles += measurePreparation_ ? 1 : 0;
+}
+
 void GpuTiles::beginFrame() {
     heightSlots_.unpinAll();
     imagerySlots_.unpinAll();
@@ -226,7 +244,8 @@ std::optional<uint32_t> GpuTiles::imagerySlot(const TileId& id) const {
 GpuTileBytes GpuTiles::allocatedBytes() const {
     return {.heights = heightSlots() * heightLevelBytes(0),
             .maxima = heightSlots() * maximaBytes(),
-            .imagery = imagerySlots() * imageryUploadBytes()};
+            .imagery = imagerySlots() * imageryUploadBytes(),
+            .method = methodTiles_ ? methodTiles_->bytes() : 0};
 }
 
 }  // namespace terray

@@ -9,6 +9,7 @@
 #include "client/render/code_maxima.h"
 #include "client/render/gl_objects.h"
 #include "client/render/gpu_timer.h"
+#include "client/render/method_tiles.h"
 #include "client/render/shader_library.h"
 #include "client/render/slot_table.h"
 #include "client/render/tile_editor.h"
@@ -27,6 +28,16 @@ struct GpuTilesOptions {
     /// all.
     uint64_t heightTiles = 0;
     uint64_t imageryTiles = 0;
+    MethodOptions method;  ///< what is kept of each height tile beside its pyramid
+    /// Measure Preparation; uploads then wait for the GPU.
+    bool measurePreparation = false;
+};
+
+/// Time that it took to prepare height tiles for drawing, from codes that the GPU has.
+struct Preparation {
+    uint64_t tiles = 0;
+    double pyramidMs = 0;  ///< the maximum mipmaps of all of these
+    double methodMs = 0;   ///< what the method makes of them
 };
 
 /// GPU bytes by kind.
@@ -34,6 +45,7 @@ struct GpuTileBytes {
     uint64_t heights = 0;  ///< level 0 of the height array: 516 x 516 codes a slot
     uint64_t maxima = 0;   ///< its mip levels 1..9, the maximum mipmap
     uint64_t imagery = 0;  ///< BC1 with its 4 mips
+    uint64_t method = 0;   ///< what the method keeps
 };
 
 /// What the renderer must know of a resident height tile, as it is drawn: of an edited one, edited.
@@ -55,7 +67,8 @@ struct ResidentHeights {
 ///
 /// GL thread only. Never more than the budgets, except that there is at least one slot of each kind that is used.
 /// Throws Error(graphics) when the driver has less memory than that. Uploads change the current program, texture unit 0
-/// and image units 0..4, those of edited tiles also uniform buffer 0 and storage buffers 0 and 1.
+/// and image units 0..4, by some methods storage buffer 0, those of edited tiles also uniform buffer 0 and storage
+/// buffers 0 and 1.
 class GpuTiles {
   public:
     /// @param shaders  outlives this object
@@ -99,6 +112,10 @@ class GpuTiles {
     [[nodiscard]] uint32_t imagerySlots() const { return imagerySlots_.capacity(); }
     [[nodiscard]] size_t residentHeights() const { return heightSlots_.size(); }
     [[nodiscard]] size_t residentImagery() const { return imagerySlots_.size(); }
+    /// Null for methods that keep nothing of a tile.
+    [[nodiscard]] const MethodTiles* methodTiles() const { return methodTiles_.get(); }
+    /// Of all uploads so far; zeros unless it was asked for.
+    [[nodiscard]] const Preparation& preparation() const { return preparation_; }
     /// Allocated, whether or not filled.
     [[nodiscard]] GpuTileBytes allocatedBytes() const;
     /// Allocated for edits; 0 while no tile has been edited.
@@ -112,6 +129,7 @@ class GpuTiles {
   private:
     void edit(uint32_t slot, const HeightTile& tile, const EditedTile& edited);
     void buildMaxima(uint32_t slot);
+    void prepare(const HeightTile& tile, uint32_t slot);
 
     const ShaderLibrary& shaders_;
     SlotTable heightSlots_;
@@ -120,6 +138,9 @@ class GpuTiles {
     GlTexture heightTexture_;
     GlTexture imageryTexture_;
     GlProgram maximaProgram_;
+    std::unique_ptr<MethodTiles> methodTiles_;
+    bool measurePreparation_;
+    Preparation preparation_;
     std::unique_ptr<TileEditor> editor_;  ///< from the first edited tile on
 };
 

@@ -28,6 +28,17 @@ Method methodOf(const std::string& name) {
     refuse(name, expected);
 }
 
+std::string nameOf(MethodKey::Kind kind) {
+    if (kind == MethodKey::Kind::any) return "a number";
+    return kind == MethodKey::Kind::whole ? "a whole number" : "a power of two";
+}
+
+bool isOf(MethodKey::Kind kind, double value) {
+    if (kind == MethodKey::Kind::any) return true;
+    return kind == MethodKey::Kind::whole ? value == std::floor(value)
+                                          : std::exp2(std::floor(std::log2(value))) == value;
+}
+
 void setKey(MethodOptions& options, const std::string& assignment) {
     const size_t equals = assignment.find('=');
     const std::string key = assignment.substr(0, equals);
@@ -37,9 +48,9 @@ void setKey(MethodOptions& options, const std::string& assignment) {
         known += (known.empty() ? "" : ", ") + std::string(entry.key);
         if (entry.key != key) continue;
         const auto value = equals == std::string::npos ? std::nullopt : parseNumber(assignment.substr(equals + 1));
-        if (!value || *value < entry.lowest || *value > entry.highest || (entry.whole && *value != std::floor(*value)))
-            refuse(assignment, key + "= and a " + (entry.whole ? "whole " : "") + "number from " +
-                                   shortText(entry.lowest) + " to " + shortText(entry.highest));
+        if (!value || *value < entry.lowest || *value > entry.highest || !isOf(entry.kind, *value))
+            refuse(assignment, key + "= and " + nameOf(entry.kind) + " from " + shortText(entry.lowest) + " to " +
+                                   shortText(entry.highest));
         options.*entry.value = *value;
         return;
     }
@@ -76,7 +87,9 @@ std::string description(const MethodOptions& options) {
 }
 
 interop::MethodParameters methodParameters(const MethodOptions& options) {
-    return {.linear = glm::vec4(glm::dvec4(options.least, options.most, options.halvings, 0))};
+    const double stride = options.exponential != 0 ? -1 : options.stride / options.quads;
+    return {.linear = glm::vec4(glm::dvec4(options.least, options.most, options.halvings, 0)),
+            .hull = glm::vec4(glm::dvec4(options.steps, options.more, stride, options.secants))};
 }
 
 }  // namespace terray

@@ -19,6 +19,10 @@ enum class Method : uint8_t {
     /// Uniform steps through the node's box, more for flat rays, then halving (paper 003). Misses what is thinner along
     /// the ray than a step.
     linear,
+    /// A coarse mesh, pushed up above the ground and rasterised; from it steps of one length or doubling ones, more and
+    /// longer ones for rays that missed, then the secant method (paper 002). Misses what its steps do not reach or step
+    /// over.
+    hull,
 };
 
 /// A method's name on command lines and its define in shaders ("": the pyramid's own program draws it).
@@ -26,11 +30,13 @@ struct MethodEntry {
     Method method;
     std::string_view name;
     std::string_view define;
+    bool geometry = false;  ///< rasterises its own (GeometryPass), so only the raster launch draws it
 };
-inline constexpr std::array<MethodEntry, 3> kMethods = {{
+inline constexpr std::array<MethodEntry, 4> kMethods = {{
     {Method::pyramid, "pyramid", ""},
     {Method::march, "march", ""},
     {Method::linear, "linear", "TERRAY_METHOD_LINEAR"},
+    {Method::hull, "hull", "TERRAY_METHOD_HULL", true},
 }};
 [[nodiscard]] constexpr const MethodEntry& entryOf(Method method) {
     return kMethods[static_cast<size_t>(method)];
@@ -43,6 +49,13 @@ struct MethodOptions {
     double least = 128;   ///< samples of a vertical ray's way through a box
     double most = 512;    ///< of a horizontal ray's
     double halvings = 8;  ///< of the last step
+    // hull
+    double quads = 32;       ///< along a tile's side
+    double steps = 5;        ///< from the mesh on
+    double more = 10;        ///< of rays that met nothing, each twice as long
+    double stride = 0.8;     ///< length of a step, in quads
+    double exponential = 0;  ///< 1: steps that double up to the box's exit instead, and no more
+    double secants = 2;      ///< at last
 
     bool operator==(const MethodOptions&) const = default;
 };
@@ -54,12 +67,18 @@ struct MethodKey {
     double MethodOptions::*value;
     double lowest;
     double highest;
-    bool whole;
+    enum class Kind : uint8_t { any, whole, powerOfTwo } kind;
 };
-inline constexpr std::array<MethodKey, 3> kMethodKeys = {{
-    {Method::linear, "least", &MethodOptions::least, 1, 65536, true},
-    {Method::linear, "most", &MethodOptions::most, 1, 65536, true},
-    {Method::linear, "halvings", &MethodOptions::halvings, 0, 32, true},
+inline constexpr std::array<MethodKey, 9> kMethodKeys = {{
+    {Method::linear, "least", &MethodOptions::least, 1, 65536, MethodKey::Kind::whole},
+    {Method::linear, "most", &MethodOptions::most, 1, 65536, MethodKey::Kind::whole},
+    {Method::linear, "halvings", &MethodOptions::halvings, 0, 32, MethodKey::Kind::whole},
+    {Method::hull, "quads", &MethodOptions::quads, 16, 256, MethodKey::Kind::powerOfTwo},
+    {Method::hull, "steps", &MethodOptions::steps, 1, 65536, MethodKey::Kind::whole},
+    {Method::hull, "more", &MethodOptions::more, 0, 65536, MethodKey::Kind::whole},
+    {Method::hull, "stride", &MethodOptions::stride, 1e-4, 1e4, MethodKey::Kind::any},
+    {Method::hull, "exponential", &MethodOptions::exponential, 0, 1, MethodKey::Kind::whole},
+    {Method::hull, "secants", &MethodOptions::secants, 0, 32, MethodKey::Kind::whole},
 }};
 
 /// What "NAME" or "NAME:KEY=VALUE,KEY=VALUE" says, all else by default. Throws Error(usage) naming what is unknown or

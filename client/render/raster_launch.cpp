@@ -5,8 +5,8 @@
 namespace terray {
 namespace {
 
-/// The 12 triangles of a box whose corner n lies at x = n & 1, y = n >> 1 & 1, z = n >> 2; counter-clockwise from
-/// outside in the tile frame, hence clockwise on the ground, whose y runs the other way.
+/// The 12 triangles of a box, those of its sides first. Corner n lies at x = n & 1, y = n >> 1 & 1, z = n >> 2;
+/// counter-clockwise from outside in the tile frame, hence clockwise on the ground, whose y runs the other way.
 constexpr std::array<uint8_t, 36> kBoxIndices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
                                                  2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
 
@@ -17,7 +17,8 @@ RasterLaunch::RasterLaunch(const ShaderLibrary& shaders)
       marchPrograms_(shaders, {"box.vert", "march.frag"}),
       resolvePrograms_(shaders, {"screen.vert", "resolve.frag"}),
       boxIndices_(makeBuffer()),
-      vertexArray_(makeVertexArray()) {
+      vertexArray_(makeVertexArray()),
+      shaders_(shaders) {
     glNamedBufferStorage(boxIndices_.name(), sizeof(kBoxIndices), kBoxIndices.data(), 0);
     glVertexArrayElementBuffer(vertexArray_.name(), boxIndices_.name());
 }
@@ -50,6 +51,23 @@ void RasterLaunch::cast(const CastFrame& frame) {
         glBindImageTexture(TERRAY_IMAGE_STEPS, frame.targets.steps.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
     }
 
+    glBindVertexArray(vertexArray_.name());
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CULL_FACE);
+    glFrontFace(GL_CW);
+    glDepthFunc(GL_GREATER);
+    if (entryOf(frame.features.method).geometry) {
+        castGeometry(frame, targets);
+    } else {
+        castRays(frame, targets);
+    }
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void RasterLaunch::castRays(const CastFrame& frame, const RasterTargets& targets) {
+    const bool occlusion = frame.features.occlusion;
     // Nodes of columns are drawn by a program that knows of no patches.
     FeatureSet columns = frame.features.marching();
     columns.bilinear = false;
@@ -58,14 +76,7 @@ void RasterLaunch::cast(const CastFrame& frame) {
     FeatureSet placing;
     placing.curved = frame.features.curved;
     const GlProgram* idProgram = occlusion ? &idPrograms_.get(placing) : nullptr;
-
-    glBindVertexArray(vertexArray_.name());
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glEnable(GL_CULL_FACE);
-    glFrontFace(GL_CW);
     glCullFace(GL_FRONT);
-    glDepthFunc(GL_GREATER);
     for (size_t node = 0; node < frame.nodes.size(); ++node) {
         if (occlusion) {
             frame.enter(GpuPass::id);
@@ -79,8 +90,14 @@ void RasterLaunch::cast(const CastFrame& frame) {
         const bool bilinear = (frame.nodes[node].source.w & TERRAY_BILINEAR_BIT) != 0;
         draw(bilinear ? patchProgram : columnProgram, targets.marchFramebuffer, node);
     }
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_DEPTH_TEST);
+}
+
+void RasterLaunch::castGeometry(const CastFrame& frame, const RasterTargets& targets) {
+    if (!geometry_) geometry_ = std::make_unique<GeometryPass>(shaders_, vertexArray_);
+    frame.enter(GpuPass::march);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.marchFramebuffer.name());
+    geometry_->begin(frame);
+    for (size_t node = 0; node < frame.nodes.size(); ++node) geometry_->draw(frame, node);
 }
 
 void RasterLaunch::resolve(const CastFrame& frame) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "client/render/cast_frame.h"
+#include "client/render/geometry_pass.h"
 #include "client/render/program_cache.h"
 
 namespace terray {
@@ -16,7 +18,8 @@ class RasterLaunch {
   public:
     explicit RasterLaunch(const ShaderLibrary& shaders);
 
-    /// Fills hit, node and, with statistics, steps of the targets.
+    /// Fills hit, node and, with statistics, steps of the targets. Methods that rasterise geometry draw that instead of
+    /// boxes.
     void cast(const CastFrame& frame);
     /// Fills colour and, with normals, normal. What the resolve shader reads must be bound.
     void resolve(const CastFrame& frame);
@@ -27,12 +30,16 @@ class RasterLaunch {
 
   private:
     void draw(const GlProgram& program, const GlFramebuffer& framebuffer, size_t node);
+    void castRays(const CastFrame& frame, const RasterTargets& targets);
+    void castGeometry(const CastFrame& frame, const RasterTargets& targets);
 
     ProgramCache idPrograms_;
     ProgramCache marchPrograms_;
     ProgramCache resolvePrograms_;
     GlBuffer boxIndices_;
     GlVertexArray vertexArray_;
+    const ShaderLibrary& shaders_;
+    std::unique_ptr<GeometryPass> geometry_;  ///< from the first frame of such a method on
 };
 
 }  // namespace terray

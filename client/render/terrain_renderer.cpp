@@ -213,6 +213,14 @@ void TerrainRenderer::calibrate(CastFrame frame, bool occlusion) {
     calibration_ = result;
 }
 
+/// The launch that draws a frame: for geometry the raster launch, whatever was asked for.
+Launch TerrainRenderer::launchOf(const CastFrame& frame, const RenderOptions& options) {
+    if (entryOf(options.method.method).geometry) return Launch::raster;
+    if (options.launch != Launch::automatic) return options.launch;
+    if (!calibration_) calibrate(frame, options.occlusion);
+    return calibration_->chosen;
+}
+
 void TerrainRenderer::setOverlay(std::span<const OverlayMesh> meshes) {
     overlay_ = meshes.empty() ? nullptr : std::make_unique<OverlayPass>(shaders_, meshes);
 }
@@ -262,11 +270,12 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
                     .nodes = std::span(nodes_).first(nodes.size()),
                     .features = features,
                     .targets = targets,
-                    .timer = timer};
-    if (options.launch == Launch::automatic && !calibration_) calibrate(frame, options.occlusion);
-    const Launch launch = options.launch == Launch::automatic ? calibration_->chosen : options.launch;
+                    .timer = timer,
+                    .methodTiles = tiles.methodTiles()};
+    const Launch launch = launchOf(frame, options);
     if (launch == Launch::compute) targets.dropRaster();
-    frame.features.occlusion = options.occlusion && launch == Launch::raster;
+    frame.features.occlusion =
+        options.occlusion && launch == Launch::raster && !entryOf(options.method.method).geometry;
     draw(frame, launch);
     if (overlay_) overlay_->draw(frame);
 

@@ -50,11 +50,11 @@ struct RenderOptions {
     glm::dvec3 sunDirection{-0.5417, 0.5417, 0.6428};
     float anisotropy = 16;  ///< 1..16, of photo sampling
     PhotoFilter photoFilter = PhotoFilter::automatic;
-    double nearMetres = 0.1;  ///< view depth that depth value 1 stands for; hits nearer count as it
-    Launch launch = Launch::raster;
-    bool occlusion = true;  ///< raster launch: the tile-ID pass (paper 001, section 3.4)
+    double nearMetres = 0.1;         ///< view depth that depth value 1 stands for; hits nearer count as it
+    Launch launch = Launch::raster;  ///< methods that rasterise geometry are drawn by the raster launch alone
+    bool occlusion = true;           ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
-    MethodOptions method;
+    MethodOptions method;  ///< that of GpuTilesOptions, where the method keeps something of each tile
     /// The sky of the sun's elevation, and its light on the ground; off: a gradient, and light as under a sun at 40
     /// degrees. Heights count from the sea (z = 0).
     bool sky = false;
@@ -102,6 +102,7 @@ class TerrainRenderer {
 
   private:
     void calibrate(CastFrame frame, bool occlusion);
+    Launch launchOf(const CastFrame& frame, const RenderOptions& options);
     void draw(const CastFrame& frame, Launch launch);
     void describeNodes(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
                        const RenderOptions& options);

@@ -130,7 +130,9 @@ TEST(EngineOptions, AMethodsNumbersAreSetBehindItsName) {
     EXPECT_EQ(description(MethodOptions()), "pyramid");
     for (const MethodKey& key : kMethodKeys) {
         const std::string name(entryOf(key.method).name), start = name + ":" + std::string(key.key) + "=";
-        const double value = MethodOptions().*key.value + 1;
+        const double value = key.kind == MethodKey::Kind::powerOfTwo ? 2 * MethodOptions().*key.value
+                             : key.highest == 1                      ? 1
+                                                                     : MethodOptions().*key.value + 1;
         EXPECT_EQ(parsed({"--method", start + Json(value).dump()}).render.method.*key.value, value) << start;
         for (const std::string& wrong : {start, start + "-1", start + "x", start + "1e9", name + ":", name + ":x=1"})
             EXPECT_EQ(refusal({"--method", wrong}), ExitCode::usage) << wrong;
@@ -138,6 +140,8 @@ TEST(EngineOptions, AMethodsNumbersAreSetBehindItsName) {
     EXPECT_EQ(refusal({"--method", "pyramid:least=8"}), ExitCode::usage);
     EXPECT_EQ(refusal({"--method", "linear:least=64,most=32"}), ExitCode::usage);
     EXPECT_EQ(refusal({"--method", "linear:halvings=1.5"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--method", "hull:quads=48"}), ExitCode::usage);
+    EXPECT_EQ(refusal({"--method", "hull", "--launch", "compute"}), ExitCode::usage) << "it rasterises";
 }
 
 TEST(EngineOptions, EveryShadingModeHasItsName) {

@@ -1,0 +1,65 @@
+#include "client/render/hull_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/tiling.h"
+
+namespace terray {
+namespace {
+
+constexpr int kGroupSide = 8;  // of hull.comp
+
+GLuint groupsOver(int texels) {
+    return static_cast<GLuint>((texels + kGroupSide - 1) / kGroupSide);
+}
+
+}  // namespace
+
+HullTiles::HullTiles(int side, uint32_t slots, const ShaderLibrary& shaders)
+    : side_(side),
+      slots_(slots),
+      hulls_(makeTexture(GL_TEXTURE_2D_ARRAY)),
+      pushes_(makeBuffer()),
+      program_(shaders.require({"methods/hull.comp"}, {})) {
+    glTextureStorage3D(hulls_.name(), 1, GL_R32F, side + 1, side + 1, static_cast<GLsizei>(slots));
+    glTextureParameteri(hulls_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(hulls_.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glNamedBufferStorage(pushes_.name(), static_cast<GLsizeiptr>(sizeof(float)) * side * side, nullptr, 0);
+}
+
+void HullTiles::build(const HeightTile&, uint32_t slot, GLuint heightTexture) {
+    glUseProgram(program_.name());
+    glBindTextureUnit(TERRAY_UNIT_HEIGHTS, heightTexture);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, pushes_.name());
+    glBindImageTexture(0, hulls_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R32F);
+    glUniform2i(0, static_cast<GLint>(slot), side_);
+    glUniform1i(1, 0);  // steps one and two: quads
+    glDispatchCompute(groupsOver(side_), groupsOver(side_), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    glUniform1i(1, 1);  // step three: vertices
+    glDispatchCompute(groupsOver(side_ + 1), groupsOver(side_ + 1), 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void HullTiles::bind() const {
+    glBindTextureUnit(TERRAY_UNIT_METHOD, hulls_.name());
+}
+
+void HullTiles::draw(const interop::NodeParameters& node) const {
+    // The quads that the node's cell touches; clip distances cut off what lies beyond it.
+    const float quad = static_cast<float>(kTileCore) / static_cast<float>(side_);
+    const auto first = [&](float from) { return static_cast<GLint>(std::floor(from / quad)); };
+    const auto last = [&](float to) { return static_cast<GLint>(std::ceil(to / quad)); };
+    const GLint column = first(node.boxMin.x), row = first(node.boxMin.y);
+    const GLint columns = last(node.boxMax.x) - column, rows = last(node.boxMax.y) - row;
+    glUniform3i(TERRAY_UNIFORM_GEOMETRY, column, row, side_);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (columns + 1), rows);
+}
+
+uint64_t HullTiles::bytes() const {
+    const auto vertices = static_cast<uint64_t>(side_ + 1) * static_cast<uint64_t>(side_ + 1);
+    return sizeof(float) * (slots_ * vertices + static_cast<uint64_t>(side_) * static_cast<uint64_t>(side_));
+}
+
+}  // namespace terray
