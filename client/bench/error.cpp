@@ -25,6 +25,7 @@ struct ErrorOptions {
     int64_t frames = ErrorProtocol().frames;
     int64_t repeats = ErrorProtocol().repeats;
     int64_t supersampling = ErrorProtocol().supersampling;
+    bool split = false;
     bool maps = false;
     bool force = false;
     EngineCommandLine engine;
@@ -43,6 +44,7 @@ bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     line.option("--out", options.out, "DIR", "for errors.csv, summary.json, manifest.json and maps/").required();
     line.option("--sweep", options.sweep, sweepNames(),
                 "measure these settings one after the other, not the options as given alone");
+    line.flag("--split", options.split, "instead, split the error of the options as given into its causes");
     line.size("--size", options.protocol.width, options.protocol.height, "of a frame in pixels (640x360)");
     line.option("--frames", options.frames, "N", "spread evenly over the flight (8)");
     line.option("--pixels", options.protocol.pixels, "N", "of each frame held against the truth; 0: all (20000)");
@@ -61,6 +63,8 @@ bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     if (!(options.protocol.framesPerSecond > 0 && options.protocol.framesPerSecond <= 10000))
         throw Error(ExitCode::usage, "--fps: expected a number above 0, at most 10000");
     requireRange("--pixels", options.protocol.pixels, 0, INT64_MAX);
+    if (options.split && (options.maps || !options.sweep.empty()))
+        throw Error(ExitCode::usage, "--split: found --sweep or --maps, expected neither");
     if (options.maps && !TERRAY_WITH_OUTPUT)
         throw Error(ExitCode::unsupported, "--maps: this build writes no pictures (TERRAY_WITH_OUTPUT is off)");
     options.protocol.frames = static_cast<int>(options.frames);
@@ -81,10 +85,54 @@ Json toJson(const ErrorProtocol& protocol) {
                         {"fps", protocol.framesPerSecond}};
 }
 
-Json summaryOf(const std::vector<ErrorResult>& results) {
+template <class Result>
+Json summaryOf(const std::vector<Result>& results) {
     Json settings = Json::Array{};
-    for (const ErrorResult& result : results) settings.push(toJson(result));
+    for (const Result& result : results) settings.push(toJson(result));
     return Json::Object{{"settings", std::move(settings)}};
+}
+
+/// What is drawn and measured.
+struct Scene {
+    const TileSource& source;
+    const ShaderLibrary& shaders;
+    const Flight& flight;
+    const EngineOptions& base;
+};
+
+std::vector<ErrorResult> measureSettings(const Scene& scene, const std::vector<ErrorSetting>& settings,
+                                         const ErrorOptions& options, const RunDirectory& directory) {
+    ErrorMeasurement measurement(scene.source, scene.shaders, scene.flight, options.protocol);
+    measurement.drawReferences(scene.base);
+    TakeErrors take;
+    if (options.maps)
+        take = [&](const std::string& setting, int frame, const std::vector<PixelError>& errors) {
+            writeErrorMaps(directory.maps(), setting, frame, {options.protocol.width, options.protocol.height}, errors);
+        };
+    std::vector<ErrorResult> results;
+    for (const ErrorSetting& setting : settings) {
+        results.push_back(measurement.measure(setting, take));
+        std::printf("%s\n", lineOf(results.back()).c_str());
+        std::fflush(stdout);
+    }
+    return results;
+}
+
+std::vector<CauseResult> measureCauses(const Scene& scene, const ErrorProtocol& protocol) {
+    ErrorSplit split(scene.source, scene.shaders, scene.flight, protocol, scene.base);
+    std::vector<CauseResult> results = split.measure();
+    for (const CauseResult& result : results) std::printf("%s\n", lineOf(result).c_str());
+    return results;
+}
+
+/// Writes a run whole.
+void write(RunDirectory& directory, const std::filesystem::path& tableFile, const std::string& table,
+           const Json& summary, const Json& manifest) {
+    writeWholeFile(tableFile, std::as_bytes(std::span(table)));
+    writeJson(directory.summary(), summary);
+    writeJson(directory.manifest(), manifest);
+    directory.keep();
+    std::printf("written: %s, %s, %s\n", tableFile.c_str(), directory.summary().c_str(), directory.manifest().c_str());
 }
 
 }  // namespace
@@ -111,29 +159,17 @@ ExitCode runError(const std::vector<std::string>& arguments) {
                                      .protocol = toJson(options.protocol),
                                      .options = options.engine.toJson()};
     Json manifest = describeRun(description, context.strings(), utcNow());
-    manifest.set("sweep", options.sweep.empty() ? Json() : Json(options.sweep));
+    manifest.set("sweep", options.split ? Json("split") : options.sweep.empty() ? Json() : Json(options.sweep));
 
     const ShaderLibrary shaders = options.engine.shaders();
-    ErrorMeasurement measurement(*source, shaders, flight, options.protocol);
-    measurement.drawReferences(base);
-    TakeErrors take;
-    if (options.maps)
-        take = [&](const std::string& setting, int frame, const std::vector<PixelError>& errors) {
-            writeErrorMaps(directory.maps(), setting, frame, {options.protocol.width, options.protocol.height}, errors);
-        };
-    std::vector<ErrorResult> results;
-    for (const ErrorSetting& setting : settings) {
-        results.push_back(measurement.measure(setting, take));
-        std::printf("%s\n", lineOf(results.back()).c_str());
-        std::fflush(stdout);
+    const Scene scene{*source, shaders, flight, base};
+    if (options.split) {
+        const std::vector<CauseResult> causes = measureCauses(scene, options.protocol);
+        write(directory, directory.split(), splitTable(causes), summaryOf(causes), manifest);
+    } else {
+        const std::vector<ErrorResult> results = measureSettings(scene, settings, options, directory);
+        write(directory, directory.errors(), errorTable(results), summaryOf(results), manifest);
     }
-    const std::string table = errorTable(results);
-    writeWholeFile(directory.errors(), std::as_bytes(std::span(table)));
-    writeJson(directory.summary(), summaryOf(results));
-    writeJson(directory.manifest(), manifest);
-    directory.keep();
-    std::printf("written: %s, %s, %s\n", directory.errors().c_str(), directory.summary().c_str(),
-                directory.manifest().c_str());
     return ExitCode::ok;
 }
 

@@ -8,24 +8,11 @@
 #include <vector>
 
 #include "client/bench/error_settings.h"
-#include "client/stream/flight.h"
+#include "client/bench/measured_frame.h"
 #include "common/reference/dataset_heights.h"
 #include "common/reference/ground_caster.h"
-#include "common/reference/picture_error.h"
-#include "common/reference/pixel_error.h"
 
 namespace terray {
-
-/// How errors are measured; two measurements compare only when all of it is the same.
-struct ErrorProtocol {
-    int width = 640;
-    int height = 360;
-    int frames = 8;               ///< spread evenly over the flight, ends included
-    int64_t pixels = 20'000;      ///< of each frame held against the truth; 0: all
-    int repeats = 5;              ///< of the timed frames, after one untimed round
-    int supersampling = 2;        ///< of reference pictures, samples along a pixel's side
-    double framesPerSecond = 30;  ///< of the flight: how far apart frames are that follow each other
-};
 
 /// What a setting came to.
 struct ErrorResult {
@@ -72,8 +59,6 @@ class ErrorMeasurement {
     [[nodiscard]] ErrorResult measure(const ErrorSetting& setting, const TakeErrors& take);
 
   private:
-    [[nodiscard]] double secondsOf(int frame) const;
-    [[nodiscard]] Camera cameraOf(int frame) const;
     /// Of the frame that follows on the flight's clock; at its end, of the one before.
     [[nodiscard]] Camera cameraBeside(int frame) const;
     void time(Engine& engine, ErrorResult& result) const;
@@ -87,8 +72,5 @@ class ErrorMeasurement {
     std::vector<Grid<Rgba>> references_;
     std::vector<double> finestChanges_;  ///< FLIP from each frame to the one beside it
 };
-
-/// A picture of supersampling^2 pixels for each, averaged in linear light.
-[[nodiscard]] Grid<Rgba> averaged(GridView<const Rgba> picture, int supersampling);
 
 }  // namespace terray

@@ -75,11 +75,29 @@ std::vector<Column> columnsOf(const ErrorResult& result) {
     return columns;
 }
 
-}  // namespace
+std::vector<Column> columnsOf(const CauseResult& result) {
+    std::vector<Column> columns{{"cause", "\"" + result.cause + "\""}};
+    const GroundError ground = result.ground.value_or(GroundError());
+    addSpread(columns, "error_px", ground.errorPixels);
+    addSpread(columns, "depth_m", ground.depthMetres);
+    columns.push_back({"pixels", std::to_string(ground.pixels)});
+    columns.push_back({"see_through", std::to_string(ground.seeThrough)});
+    columns.push_back({"covers_sky", std::to_string(ground.coversSky)});
+    if (!result.ground)
+        for (size_t n = 1; n < columns.size(); ++n) columns[n].value.clear();
+    columns.push_back({"flip_mean", result.flip ? text(*result.flip) : ""});
+    columns.push_back({"psnr_db", result.psnr ? text(*result.psnr) : ""});
+    return columns;
+}
 
-std::string errorTable(const std::vector<ErrorResult>& results) {
+Json valueJson(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+}
+
+template <class Row>
+std::string tableOf(const std::vector<Row>& results) {
     std::string table;
-    for (const ErrorResult& result : results) {
+    for (const Row& result : results) {
         const std::vector<Column> columns = columnsOf(result);
         const auto line = [&](auto field) {
             for (size_t n = 0; n < columns.size(); ++n) table += (n > 0 ? "," : "") + columns[n].*field;
@@ -89,6 +107,52 @@ std::string errorTable(const std::vector<ErrorResult>& results) {
         line(&Column::value);
     }
     return table;
+}
+
+}  // namespace
+
+std::string errorTable(const std::vector<ErrorResult>& results) {
+    return tableOf(results);
+}
+
+std::string splitTable(const std::vector<CauseResult>& results) {
+    return tableOf(results);
+}
+
+Json toJson(const CauseResult& result) {
+    Json columns = Json::Object{};
+    if (result.ground) {
+        const GroundError& ground = *result.ground;
+        columns = Json::Object{{"error_px", spreadJson(ground.errorPixels)},
+                               {"depth_m", spreadJson(ground.depthMetres)},
+                               {"see_through", countJson(ground.seeThrough, ground.pixels)},
+                               {"covers_sky", countJson(ground.coversSky, ground.pixels)}};
+    }
+    columns.set("flip", Json::Object{{"mean", valueJson(result.flip)}});
+    columns.set("psnr_db", Json::Object{{"mean", valueJson(result.psnr)}});
+    return Json::Object{{"name", result.cause}, {"columns", std::move(columns)}};
+}
+
+std::string lineOf(const CauseResult& result) {
+    char line[256];
+    std::string told;
+    if (result.ground) {
+        const Spread& error = result.ground->errorPixels;
+        std::snprintf(line, sizeof(line), "; error %.3g px median, %.3g p95, %.3g p99, %.3g max; %llu of %llu wrong",
+                      error.median, error.p95, error.p99, error.max,
+                      static_cast<unsigned long long>(result.ground->seeThrough + result.ground->coversSky),
+                      static_cast<unsigned long long>(result.ground->pixels));
+        told += line;
+    }
+    if (result.flip) {
+        std::snprintf(line, sizeof(line), "; FLIP %.4f", *result.flip);
+        told += line;
+    }
+    if (result.psnr) {
+        std::snprintf(line, sizeof(line), "; PSNR %.1f dB", *result.psnr);
+        told += line;
+    }
+    return result.cause + told;
 }
 
 Json toJson(const ErrorResult& result) {
@@ -105,7 +169,7 @@ Json toJson(const ErrorResult& result) {
                                  {"see_through", countJson(result.seeThrough, result.pixels)},
                                  {"covers_sky", countJson(result.coversSky, result.pixels)},
                                  {"flip", spreadJson(result.flip)},
-                                 {"psnr_db", Json::Object{{"mean", result.psnr ? Json(*result.psnr) : Json()}}},
+                                 {"psnr_db", Json::Object{{"mean", valueJson(result.psnr)}}},
                                  {"popping", spreadJson(result.popping)},
                                  {"nodes", Json::Object{{"sum", result.nodes}}},
                                  {"lacking", Json::Object{{"sum", result.lacking}}},

@@ -60,10 +60,9 @@ MarchedNode::MarchedNode(const DrawNode& node, const MarchedTile& of, const Tili
     // The cell within its height tile, and half a code of room above and below, as in nodeParameters(). For patches the
     // tile's greatest code in place of the greatest of this part: rays enter a little higher, and hit the same.
     const auto below = static_cast<int>(node.cell.level - node.heightTile.level);
-    const GroundRect cell = tiling.bounds(node.cell);
     const double west = std::ldexp(static_cast<double>(node.cell.x), -below) - node.heightTile.x;
     const double north = std::ldexp(static_cast<double>(node.cell.y), -below) - node.heightTile.y;
-    const double side = (cell.east - cell.west) / spacing;
+    const double side = std::ldexp(kTileCore, -below);
     const double top = bilinear ? of.maxima[9].at(0, 0) : code(node.maxHeight);
     boxMin = {kTileCore * west, kTileCore * north, code(node.minHeight) - 0.5};
     boxMax = {kTileCore * west + side, kTileCore * north + side, top + 0.5};

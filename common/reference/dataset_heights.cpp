@@ -19,6 +19,14 @@ void forEachTile(const GridRect& rect, uint32_t level, Use use) {
             use(TileId{level, static_cast<uint32_t>(x), static_cast<uint32_t>(y)});
 }
 
+/// A number from -1/2 to 1/2 that belongs to a sample. Source: SplitMix64 (Steele, Lea, Flood 2014).
+double partOf(int64_t x, int64_t y) {
+    uint64_t z = static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ULL + static_cast<uint64_t>(y) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53 - 0.5;
+}
+
 [[noreturn]] void refuse(const TileId& id, const std::string& reason) {
     throw Error(ExitCode::dataset, "cannot read height tile " + toString(id) + " for the reference: " + reason +
                                        " (terray-preprocess verify lists all damaged tiles)");
@@ -26,14 +34,23 @@ void forEachTile(const GridRect& rect, uint32_t level, Use use) {
 
 }  // namespace
 
-DatasetHeights::DatasetHeights(const DatasetMetadata& metadata, ReadPayload readPayload)
-    : size_(metadata.samples), finestLevel_(metadata.tiling.finestLevel), readPayload_(std::move(readPayload)) {}
+DatasetHeights::DatasetHeights(const DatasetMetadata& metadata, ReadPayload readPayload, Rounding rounding)
+    : size_(metadata.samples),
+      finestLevel_(metadata.tiling.finestLevel),
+      quantum_(metadata.quantum),
+      readPayload_(std::move(readPayload)),
+      rounding_(rounding) {}
 
 double DatasetHeights::upperBound(const GridRect& rect) const {
     double bound = -std::numeric_limits<double>::infinity();
     forEachTile(rect, finestLevel_, [&](const TileId& id) {
         const HeightRecord record = recordOf(id);
-        if (record.exists) bound = std::max<double>(bound, record.maxHeight);
+        if (!record.exists) return;
+        // The record's bounds are rounded outwards, so their step is the tile's or a greater one.
+        const double step = rounding_ == Rounding::undone
+                                ? HeightEncoding::covering(record.minHeight, record.maxHeight, quantum_).metresPerCode()
+                                : 0;
+        bound = std::max(bound, record.maxHeight + step / 2);
     });
     return bound;
 }
@@ -44,6 +61,7 @@ Grid<double> DatasetHeights::read(const GridRect& rect) const {
         if (!recordOf(id).exists) return;
         const HeightTile stored = tile(id);
         const GridRect core = Tiling::coreSamples(id);
+        const double undone = rounding_ == Rounding::undone ? stored.encoding.metresPerCode() : 0;
         const GridRect shared = intersection(rect, core);
         for (int64_t y = shared.y; y < shared.y + shared.height; ++y)
             for (int64_t x = shared.x; x < shared.x + shared.width; ++x) {
@@ -51,7 +69,7 @@ Grid<double> DatasetHeights::read(const GridRect& rect) const {
                 if (code == kNoSurface) continue;
                 const double height = stored.encoding.height(code);
                 if (height > stored.record.maxHeight) refuse(id, "a sample is higher than the tile's record says");
-                heights.at(x - rect.x, y - rect.y) = height;
+                heights.at(x - rect.x, y - rect.y) = height + undone * partOf(x, y);
             }
     });
     return heights;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <unordered_map>
@@ -11,6 +12,12 @@
 
 namespace terray {
 
+/// What is told of a height that was stored rounded to its tile's step.
+enum class Rounding : uint8_t {
+    asStored,
+    undone,  ///< moved by up to half a step, the same way each time: a height that may have been before it was rounded
+};
+
 /// The finest samples of a dataset, decoded from its tiles' cores. What exists and how high it reaches is asked of
 /// each tile's parent, from the root down, and kept.
 class DatasetHeights final : public ReferenceHeights {
@@ -18,7 +25,7 @@ class DatasetHeights final : public ReferenceHeights {
     /// Reads the payload of a stored height tile; called from several threads at once.
     using ReadPayload = std::function<Result<Bytes>(const TileId&)>;
 
-    DatasetHeights(const DatasetMetadata& metadata, ReadPayload readPayload);
+    DatasetHeights(const DatasetMetadata& metadata, ReadPayload readPayload, Rounding rounding = Rounding::asStored);
 
     [[nodiscard]] GridSize size() const override { return size_; }
     [[nodiscard]] double upperBound(const GridRect& rect) const override;
@@ -30,7 +37,9 @@ class DatasetHeights final : public ReferenceHeights {
 
     GridSize size_;
     uint32_t finestLevel_;
+    double quantum_;
     ReadPayload readPayload_;
+    Rounding rounding_;
     mutable std::once_flag rootRead_;
     mutable HeightRecord root_;
     mutable std::mutex mutex_;

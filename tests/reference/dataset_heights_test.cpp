@@ -33,6 +33,29 @@ TEST(DatasetHeights, AreTheSamplesOfTheFinestLevel) {
         }
 }
 
+TEST(DatasetHeights, MayBeToldAsBeforeTheyWereRounded) {
+    const AnalyticDataset dataset({.finestLevel = 1});
+    const auto read = [&](const TileId& id) { return dataset.read(TileLayer::heights, id); };
+    const DatasetHeights stored = heightsOf(dataset);
+    const DatasetHeights undone(dataset.metadata(), read, Rounding::undone);
+    const GridRect rect{480, 500, 64, 30};
+    const Grid<double> before = undone.read(rect);
+    const Grid<double> after = stored.read(rect);
+    double sum = 0, most = 0;
+    for (int64_t y = 0; y < rect.height; ++y)
+        for (int64_t x = 0; x < rect.width; ++x) {
+            const double moved = before.at(x, y) - after.at(x, y);
+            sum += moved;
+            most = std::max(most, std::abs(moved));
+            ASSERT_LE(before.at(x, y), undone.upperBound({rect.x + x, rect.y + y, 1, 1}));
+        }
+    const double half = dataset.metadata().quantum / 2;
+    EXPECT_LE(most, half);
+    EXPECT_GT(most, 0.99 * half);
+    EXPECT_NEAR(sum / static_cast<double>(rect.width * rect.height), 0, 0.05 * half) << "without preference up or down";
+    EXPECT_EQ(undone.read({500, 510, 1, 1}).at(0, 0), before.at(20, 10)) << "the same each time";
+}
+
 TEST(DatasetHeights, WorkForADatasetOfOneTile) {
     const AnalyticDataset dataset({.finestLevel = 0});
     const DatasetHeights heights = heightsOf(dataset);
