@@ -105,6 +105,8 @@ class PmtilesReader {
     class Lookup;
     /// Begins the way to a tile without reading anything; the reader must outlive the answer.
     [[nodiscard]] Result<Lookup> lookUp(const TileId& id) const;
+    /// Drops the cached leaf directories, where their bytes may have been damaged on their way.
+    void forgetLeaves() const;
     /// Calls visit(tile, offset in the file, length) for every tile in Hilbert order, run by run expanded; stops at the
     /// first failure. Offsets are checked against the archive's tile section.
     [[nodiscard]] Result<void> forEach(const std::function<void(const TileId&, uint64_t, uint32_t)>& visit) const;

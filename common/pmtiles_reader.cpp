@@ -50,6 +50,12 @@ class LeafCache {
         }
     }
 
+    void clear() {
+        const std::lock_guard lock(mutex_);
+        leaves_.clear();
+        entries_ = 0;
+    }
+
   private:
     struct Leaf {
         std::shared_ptr<const Directory> directory;
@@ -247,6 +253,10 @@ Result<PmtilesReader::Lookup> PmtilesReader::lookUp(const TileId& id) const {
     Lookup lookup(*state_, hilbertId(id));
     if (auto result = lookup.descend(state_->root); !result.ok()) return result.failure();
     return lookup;
+}
+
+void PmtilesReader::forgetLeaves() const {
+    state_->leaves.clear();
 }
 
 Result<void> PmtilesReader::Lookup::takeLeaf(ByteView bytes) {

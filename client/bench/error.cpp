@@ -10,6 +10,7 @@
 #include "client/bench/run_directory.h"
 #include "client/engine/engine_options.h"
 #include "client/engine/program.h"
+#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 #include "common/output_file.h"
 
@@ -39,7 +40,8 @@ void requireRange(const char* name, int64_t value, int64_t least, int64_t most) 
 
 bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     CommandLine line("terray-bench error", "Measures a flight's pictures against the truth, and how long they take.");
-    line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
+    line.positional("DATASET", options.dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME")
+        .required();
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
     line.option("--out", options.out, "DIR", "for errors.csv, summary.json, manifest.json and maps/").required();
     line.option("--sweep", options.sweep, sweepNames(),
@@ -140,7 +142,7 @@ void write(RunDirectory& directory, const std::filesystem::path& tableFile, cons
 ExitCode runError(const std::vector<std::string>& arguments) {
     ErrorOptions options;
     if (!parse(options, arguments)) return ExitCode::ok;
-    const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
+    const std::unique_ptr<TileSource> source = openDataset(options.dataset);
     const Flight flight = loadFlight(options.flight);
     EngineOptions base = options.engine.options(source->metadata().imageryLevel.has_value());
     options.engine.place(*source, base);

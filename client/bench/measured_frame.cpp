@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "client/engine/program.h"
-#include "common/error.h"
 #include "common/srgb.h"
 
 namespace terray {
@@ -24,9 +23,7 @@ Camera cameraOf(const Flight& flight, const ErrorProtocol& protocol, int frame) 
 FrameReport drawWhole(Engine& engine, const Camera& camera) {
     throwIfInterrupted();
     FrameReport report = engine.drawFrame(camera, true);
-    if (!report.failures.empty())
-        throw Error(ExitCode::dataset, "the measurement was broken off: " + report.failures.front() +
-                                           " (terray-preprocess verify lists all damaged tiles)");
+    requireAllTiles(report, "the measurement was broken off");
     return report;
 }
 

@@ -13,6 +13,7 @@
 #include "client/engine/engine_options.h"
 #include "client/engine/program.h"
 #include "client/stream/flight.h"
+#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 #if TERRAY_WITH_OUTPUT
 #include "client/output/picture.h"
@@ -40,7 +41,8 @@ struct ReplayOptions {
 bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
     CommandLine line("terray-bench replay",
                      "Flies a flight frame by frame at a fixed rate and writes what each frame cost.");
-    line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
+    line.positional("DATASET", options.dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME")
+        .required();
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
     line.option("--out", options.out, "DIR", "for frames.csv, steps.csv, summary.json, manifest.json and frames/")
         .required();
@@ -78,12 +80,6 @@ EngineOptions engineOptions(const ReplayOptions& options, const TileSource& sour
 size_t frameCount(const Flight& flight, double framesPerSecond) {
     constexpr double kSlack = 1e-6;  // of a frame: a flight of 10 s at 30 a second has its frame 300
     return static_cast<size_t>(std::floor(flight.seconds() * framesPerSecond + kSlack)) + 1;
-}
-
-void refuseFailures(const FrameReport& report) {
-    if (!report.failures.empty())
-        throw Error(ExitCode::dataset, "the flight was broken off: " + report.failures.front() +
-                                           " (terray-preprocess verify lists all damaged tiles)");
 }
 
 /// One flight over one dataset, from the first warm-up frame to the last line of the table.
@@ -138,7 +134,8 @@ class Replay {
     FrameReport draw(double seconds) {
         throwIfInterrupted();
         FrameReport report = engine_.drawFrame(flight_.at(seconds), options_.waitForTiles);
-        refuseFailures(report);
+        if (!options_.waitForTiles) report.unreachable.clear();  // as while flying: it is asked for again
+        requireAllTiles(report, "the flight was broken off");
         return report;
     }
 
@@ -212,7 +209,7 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
 ExitCode runReplay(const std::vector<std::string>& arguments) {
     ReplayOptions options;
     if (!parse(options, arguments)) return ExitCode::ok;
-    const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
+    const std::unique_ptr<TileSource> source = openDataset(options.dataset);
     const Flight flight = loadFlight(options.flight);
     options.drawn = engineOptions(options, *source);  // refuses what is wrong before anything is created
 

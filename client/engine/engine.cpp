@@ -128,8 +128,9 @@ void Engine::State::selectAndPin() {
 void Engine::State::takeArrivals(size_t maxTiles) {
     for (LoadedTile& tile : pager.takeLoaded(maxTiles)) resident.accept(std::move(tile));
     for (FailedTile& tile : pager.takeFailed()) {
-        failed.insert({tile.layer, tile.id});
-        report.failures.push_back(std::move(tile.message));
+        if (tile.loss == Loss::forGood) failed.insert({tile.layer, tile.id});
+        auto& told = tile.loss == Loss::unreachable ? report.unreachable : report.failures;
+        told.push_back(std::move(tile.message));
     }
 }
 
@@ -193,11 +194,12 @@ void Engine::State::waitForTiles() {
         resident.keepOnly(batch);
         if (batch.empty()) break;
 
-        const size_t failedBefore = failed.size();
+        const size_t failedBefore = report.failures.size();
         waitForArrivals(notPending(batch));
         const std::vector<TileKey> uploaded = upload(batch, kUnlimited);
         uploadedHere.insert(uploaded.begin(), uploaded.end());
-        if (uploaded.empty() && failed.size() == failedBefore) break;
+        const bool lostSome = report.failures.size() > failedBefore;
+        if (!report.unreachable.empty() || (uploaded.empty() && !lostSome)) break;
     }
     pager.want({});
 }
@@ -227,6 +229,16 @@ void Engine::State::fillReport() {
     report.gpuTargets = targets.bytes();
     report.gpuBuffers = renderer.bufferBytes() + resident.gpu().editBufferBytes();
     report.pager = pager.statistics();
+}
+
+void requireAllTiles(const FrameReport& report, const std::string& consequence) {
+    const auto refuse = [&](ExitCode code, const std::vector<std::string>& tiles, const char* advice) {
+        if (tiles.empty()) return;
+        const std::string others = tiles.size() > 1 ? ", and " + std::to_string(tiles.size() - 1) + " more" : "";
+        throw Error(code, consequence + ": " + tiles.front() + others + advice);
+    };
+    refuse(ExitCode::dataset, report.failures, " (terray-preprocess verify lists all damaged tiles)");
+    refuse(ExitCode::network, report.unreachable, " (is the server running? then try again)");
 }
 
 Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width,

@@ -62,8 +62,13 @@ struct FrameReport {
     uint64_t gpuTargets = 0;
     uint64_t gpuBuffers = 0;
     PagerStatistics pager;
-    std::vector<std::string> failures;  ///< tiles that could not be had, as sentences; each is told once
+    std::vector<std::string> failures;  ///< tiles that are damaged or missing, as sentences; told once, or at each try
+    std::vector<std::string> unreachable;  ///< tiles that a server could not give for now; they are asked for again
 };
+
+/// For what is worth nothing with tiles missing: throws Error(dataset) when some are damaged, Error(network) when a
+/// server could not give some. @param consequence  such as "the flight was broken off"
+void requireAllTiles(const FrameReport& report, const std::string& consequence);
 
 /// The frame loop that viewer and bench share: pager, tile tree, selection, uploads, renderer over one dataset.
 ///
@@ -82,7 +87,8 @@ class Engine {
     /// Draws one frame into targets(). With waitForTiles it first loads until the selection for this camera is
     /// complete, or until budgets allow nothing more: then the picture depends only on the camera (and, when budgets
     /// are too small, on what was drawn before), never on the order in which tiles arrive. It always ends: within one
-    /// wait no tile is uploaded twice, and a tile that failed is not asked for again.
+    /// wait no tile is uploaded twice, a tile that failed is not asked for again, and where a server fails the wait
+    /// ends with what there is (FrameReport::unreachable).
     FrameReport drawFrame(const Camera& camera, bool waitForTiles);
 
     /// From the next frame on heights, the camera's among them, are drawn multiplied by this. No tile is loaded anew;

@@ -13,6 +13,8 @@ namespace terray {
 
 enum class TileLayer : uint8_t { heights, imagery };
 
+class TileReads;
+
 /// Where stored tiles come from. Thread-safe: decode workers and the IO thread call at once.
 class TileSource {
   public:
@@ -20,6 +22,9 @@ class TileSource {
     [[nodiscard]] virtual const DatasetMetadata& metadata() const = 0;
     /// The stored payload of a tile that its parent (or the metadata) says exists.
     [[nodiscard]] virtual Result<Bytes> read(TileLayer layer, const TileId& id) const = 0;
+    /// Reads for the pager's IO thread, which runs many at a time; this source must outlive them. Unless a source knows
+    /// better, read() is called for one after the other.
+    [[nodiscard]] virtual std::unique_ptr<TileReads> startReads() const;
     /// A short text that changes whenever the content does: checksums of both archives' headers, directories and
     /// metadata.
     [[nodiscard]] virtual std::string contentHash() const = 0;

@@ -1,131 +1,66 @@
 #include "client/stream/pager.h"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
-#include <optional>
 #include <thread>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 
 #include "client/stream/host_cache.h"
+#include "client/stream/job_reader.h"
+#include "client/stream/pager_job.h"
 #include "common/check.h"
 
 namespace terray {
 namespace {
 
-using KeySet = std::unordered_set<TileKey, TileKeyHash>;
-
-/// How often a tile is read before it counts as failed: bytes may be damaged on their way.
-constexpr int kReads = 2;
-
-/// One tile on its way from the source.
-struct Part {
-    TileKey key;
-    std::optional<Bytes> payload;  ///< read, not yet decoded
-    HeldTile tile;                 ///< once decoded, or held from the start
-    bool fetched = false;          ///< this job reads it, and has reserved memory for it
-    int reads = 0;
-    std::string trouble;  ///< what went wrong last
-    [[nodiscard]] bool done() const { return tile.bytes > 0; }
-    [[nodiscard]] bool lost() const { return !done() && !payload && reads >= kReads; }
-};
-
-/// A request that has been begun.
-struct Job {
-    TileKey key;
-    /// What the request needs: the tile, and for imagery the ancestors that its mip chain is gathered from. Coarse to
-    /// fine, so the tile itself is last. Those that were held are done from the start.
-    std::vector<Part> parts;
-    std::shared_ptr<const Bytes> imageryChain;
-};
-
-/// The tiles that a request needs, coarse to fine.
-std::vector<TileKey> needsOf(const TileKey& key) {
-    std::vector<TileKey> needs;
-    const uint32_t above = key.layer == TileLayer::imagery ? std::min<uint32_t>(key.id.level, kImageryMips - 1) : 0;
-    for (uint32_t levels = above; levels > 0; --levels) needs.push_back({key.layer, key.id.ancestor(levels)});
-    needs.push_back(key);
-    return needs;
-}
-
-void readPart(Part& part, const TileSource& source) {
-    ++part.reads;
-    auto payload = source.read(part.key.layer, part.key.id);
-    if (payload)
-        part.payload = std::move(*payload);
-    else
-        part.trouble = payload.failure().message;
-}
-
-void decodePart(Part& part) {
-    const Bytes payload = std::move(*part.payload);
-    part.payload.reset();
-    const auto accept = [&part](auto& decoded, auto& place) {
-        if (!decoded) {
-            part.trouble = decoded.failure().message;
-            return;
-        }
-        place = std::make_shared<std::remove_cvref_t<decltype(*decoded)>>(std::move(*decoded));
-        part.tile.bytes = hostBytesOf(part.key);
-    };
-    if (part.key.layer == TileLayer::heights) {
-        auto decoded = decodeHeightTile(payload, part.key.id);
-        accept(decoded, part.tile.heights);
-    } else {
-        auto decoded = decodeImageryTile(payload, part.key.id);
-        accept(decoded, part.tile.imagery);
-    }
-}
-
-/// The mip chain of a photo tile whose parts are all there.
-std::shared_ptr<const Bytes> gatherChain(const std::vector<Part>& parts) {
-    std::vector<const ImageryTile*> ancestors;  // the parent first
-    for (size_t i = parts.size() - 1; i-- > 0;) ancestors.push_back(parts[i].tile.imagery.get());
-    return std::make_shared<const Bytes>(gatherMipChain(*parts.back().tile.imagery, ancestors));
-}
+using Clock = std::chrono::steady_clock;
 
 LoadedTile loadedTile(const TileKey& key, const HeldTile& tile, std::shared_ptr<const Bytes> chain) {
     return {key.layer, key.id, tile.heights, std::move(chain), tile.imagery};
 }
 
-std::string describe(const TileKey& key) {
-    return (key.layer == TileLayer::heights ? "height tile " : "imagery tile ") + toString(key.id);
-}
-
 }  // namespace
 
-/// Everything behind one mutex; reading and decoding happen outside it, on a Job that only one thread has at a time.
+/// Everything but the reader, which is the IO thread's, behind one mutex; reading and decoding happen outside it.
 struct Pager::State {
-    using JobPtr = std::unique_ptr<Job>;
+    using JobPtr = JobReader::JobPtr;
 
-    State(const TileSource& tileSource, const PagerOptions& pagerOptions) : source(tileSource), options(pagerOptions) {}
+    State(const TileSource& source, const PagerOptions& pagerOptions)
+        : options(pagerOptions), reader(source.startReads()), mayHeal(reader.mayHeal()) {}
 
     void accept(const TileKey& key, bool queuedBefore);
     [[nodiscard]] JobPtr nextJob();
     [[nodiscard]] JobPtr begin(const TileKey& key);
-    void fail(const TileKey& key, const std::string& message);
+    void fail(const TileKey& key, Loss loss, const std::string& message);
+    [[nodiscard]] bool isRefused(const TileKey& key);
     void deliver(LoadedTile tile);
-    void dropUntaken(const KeySet& wanted);
+    void dropUntaken();
+    void release(const TileJob& job);
+    void handOver(std::vector<JobPtr> jobs);
     void finish(JobPtr job);
     void readLoop();
     void decodeLoop();
     [[nodiscard]] bool isSettled() const { return queue.empty() && busy.empty(); }
 
-    const TileSource& source;
     const PagerOptions options;
+    JobReader reader;  ///< the IO thread's alone, but for wake()
+    const bool mayHeal;
     mutable std::mutex mutex;
-    std::condition_variable ioWork, decodeWork, settled;
+    std::condition_variable decodeWork, settled;
     bool stopping = false;
 
     std::deque<TileKey> queue;  ///< wanted and not begun, most urgent first
-    KeySet busy;                ///< requests begun
-    KeySet coming;              ///< tiles being read or decoded, for requests or as their ancestors
-    KeySet untaken;             ///< delivered, not yet taken
-    KeySet lost;                ///< tiles that could not be had
-    KeySet refused;             ///< requests that failed: not taken up again
-    std::deque<JobPtr> toRead;  ///< to be read once more
+    TileKeySet wanted;          ///< by the last want()
+    TileKeySet busy;            ///< requests begun
+    TileKeySet coming;          ///< tiles being read or decoded, for requests or as their ancestors
+    TileKeySet untaken;         ///< delivered, not yet taken
+    TileKeySet lost;            ///< tiles that could not be had and never will
+    std::unordered_map<TileKey, Clock::time_point, TileKeyHash> refused;  ///< requests not taken up before then
+    std::deque<JobPtr> toRead;                                            ///< to be read once more
     std::deque<JobPtr> toDecode;
     HostCache cache;
     uint64_t reserved = 0;  ///< bytes that the tiles in `coming` will take
@@ -137,7 +72,7 @@ struct Pager::State {
 
 /// Puts a wanted tile on its way, unless it is so already or never will be.
 void Pager::State::accept(const TileKey& key, bool queuedBefore) {
-    if (busy.contains(key) || untaken.contains(key) || refused.contains(key)) return;
+    if (busy.contains(key) || untaken.contains(key) || isRefused(key)) return;
     const auto needs = needsOf(key);
     if (!std::all_of(needs.begin(), needs.end(), [this](const TileKey& need) { return cache.holds(need); })) {
         queue.push_back(key);
@@ -160,7 +95,7 @@ Pager::State::JobPtr Pager::State::nextJob() {
         toRead.pop_front();
         return job;
     }
-    if (busy.size() >= static_cast<size_t>(options.maxRequestsInFlight)) return nullptr;
+    if (busy.size() >= static_cast<size_t>(options.maxRequestsInFlight) || !reader.hasRoom()) return nullptr;
     for (auto place = queue.begin(); place != queue.end();) {
         const TileKey key = *place;
         const auto needs = needsOf(key);
@@ -168,7 +103,7 @@ Pager::State::JobPtr Pager::State::nextJob() {
             std::find_if(needs.begin(), needs.end(), [this](const auto& need) { return lost.contains(need); });
         if (bad != needs.end()) {
             place = queue.erase(place);
-            fail(key, describe(key) + " needs " + describe(*bad) + ", which could not be had");
+            fail(key, Loss::forGood, describe(key) + " needs " + describe(*bad) + ", which could not be had");
             continue;
         }
         // A tile that another request brings is not read twice: that request comes first.
@@ -187,10 +122,10 @@ Pager::State::JobPtr Pager::State::nextJob() {
 
 /// Takes what is held, reserves memory for the rest.
 Pager::State::JobPtr Pager::State::begin(const TileKey& key) {
-    auto job = std::make_unique<Job>();
+    auto job = std::make_unique<TileJob>();
     job->key = key;
     for (const TileKey& need : needsOf(key)) {
-        Part part{.key = need};
+        TilePart part{.key = need};
         if (const HeldTile* held = cache.use(need)) {
             part.tile = *held;
         } else {
@@ -206,11 +141,20 @@ Pager::State::JobPtr Pager::State::begin(const TileKey& key) {
     return job;
 }
 
-void Pager::State::fail(const TileKey& key, const std::string& message) {
-    refused.insert(key);
-    failed.push_back({key.layer, key.id, message});
+void Pager::State::fail(const TileKey& key, Loss loss, const std::string& message) {
+    if (loss == Loss::forGood) refused[key] = Clock::time_point::max();
+    if (loss == Loss::damaged) refused[key] = Clock::now() + std::chrono::milliseconds(options.healMs);
+    failed.push_back({key.layer, key.id, message, loss});
     ++count.failed;
     if (isSettled()) settled.notify_all();
+}
+
+bool Pager::State::isRefused(const TileKey& key) {
+    const auto found = refused.find(key);
+    if (found == refused.end()) return false;
+    if (Clock::now() < found->second) return true;
+    refused.erase(found);
+    return false;
 }
 
 void Pager::State::deliver(LoadedTile tile) {
@@ -220,7 +164,7 @@ void Pager::State::deliver(LoadedTile tile) {
 }
 
 /// Cancels what has arrived, was not taken, and is not wanted any more; else a slow taker would gather tiles for ever.
-void Pager::State::dropUntaken(const KeySet& wanted) {
+void Pager::State::dropUntaken() {
     const auto dropped = std::erase_if(loaded, [&](const LoadedTile& tile) {
         const TileKey key{tile.layer, tile.id};
         return !wanted.contains(key) && untaken.erase(key) > 0;
@@ -229,11 +173,9 @@ void Pager::State::dropUntaken(const KeySet& wanted) {
     count.cancelled += dropped;
 }
 
-/// Settles a request: all its parts are there, or one is lost.
-void Pager::State::finish(JobPtr job) {
-    const Part* bad = nullptr;
-    for (const Part& part : job->parts) {
-        if (part.lost() && bad == nullptr) bad = &part;
+/// Gives back what begin() reserved, and keeps the tiles that have come.
+void Pager::State::release(const TileJob& job) {
+    for (const TilePart& part : job.parts) {
         if (!part.fetched) continue;
         coming.erase(part.key);
         reserved -= hostBytesOf(part.key);
@@ -241,38 +183,58 @@ void Pager::State::finish(JobPtr job) {
     }
     const uint64_t budget = options.hostBudgetBytes;
     count.evicted += cache.shrinkTo(budget - std::min(budget, reserved));
-    busy.erase(job->key);
+    busy.erase(job.key);
+}
+
+/// Settles a request: all its parts are there, or one cannot be had.
+void Pager::State::finish(JobPtr job) {
+    release(*job);
+    const TilePart* bad = job->lostPart();
     if (bad != nullptr) {
-        lost.insert(bad->key);
-        fail(job->key,
+        if (!mayHeal) lost.insert(bad->key);
+        fail(job->key, mayHeal ? Loss::damaged : Loss::forGood,
              describe(job->key) + " could not be had: " + describe(bad->key) + " was read twice: " + bad->trouble);
+    } else if (!job->unreachable.empty()) {
+        fail(job->key, Loss::unreachable, describe(job->key) + " cannot be had for now: " + job->unreachable);
     } else {
         deliver(loadedTile(job->key, job->parts.back().tile, job->imageryChain));
     }
-    ioWork.notify_one();
+    reader.wake();
     if (isSettled()) settled.notify_all();
+}
+
+/// What has been read goes to the workers; a job that was cancelled is settled, or read on if it is wanted again.
+void Pager::State::handOver(std::vector<JobPtr> jobs) {
+    for (JobPtr& job : jobs) {
+        const bool hopeless = job->lostPart() != nullptr || !job->unreachable.empty();
+        const bool partly =
+            std::any_of(job->parts.begin(), job->parts.end(), [](const TilePart& part) { return part.toBeRead(); });
+        if (hopeless || !partly) {
+            toDecode.push_back(std::move(job));
+            decodeWork.notify_one();
+        } else if (wanted.contains(job->key)) {
+            toRead.push_back(std::move(job));
+        } else {
+            release(*job);
+            ++count.cancelled;
+            if (isSettled()) settled.notify_all();
+        }
+    }
 }
 
 void Pager::State::readLoop() {
     std::unique_lock lock(mutex);
     while (!stopping) {
+        if (options.cancelReads) handOver(reader.cancelUnless(wanted));
         JobPtr job = nextJob();
-        if (!job) {
-            ioWork.wait(lock);
-            continue;
-        }
+        const bool idle = job == nullptr;
         lock.unlock();
-        uint64_t bytes = 0;
-        for (Part& part : job->parts) {
-            if (part.done()) continue;
-            while (!part.payload && !part.lost()) readPart(part, source);
-            if (part.lost()) break;
-            bytes += part.payload->size();
-        }
+        if (job) reader.begin(std::move(job));
+        std::vector<JobPtr> ended = reader.wait(idle);
         lock.lock();
-        count.bytesRead += bytes;
-        toDecode.push_back(std::move(job));
-        decodeWork.notify_one();
+        count.bytesRead = reader.payloadBytes();
+        count.reads = reader.statistics();
+        handOver(std::move(ended));
     }
 }
 
@@ -284,19 +246,14 @@ void Pager::State::decodeLoop() {
         JobPtr job = std::move(toDecode.front());
         toDecode.pop_front();
         lock.unlock();
-        bool complete = true, hopeless = false;
-        for (Part& part : job->parts) {
-            if (part.payload) decodePart(part);
-            complete = complete && part.done();
-            hopeless = hopeless || part.lost();
-        }
-        if (complete && job->key.layer == TileLayer::imagery) job->imageryChain = gatherChain(job->parts);
+        const bool complete = job->decode();
+        const bool hopeless = job->lostPart() != nullptr || !job->unreachable.empty();
         lock.lock();
         if (complete || hopeless) {
             finish(std::move(job));
         } else {
             toRead.push_back(std::move(job));
-            ioWork.notify_one();
+            reader.wake();
         }
     }
 }
@@ -315,23 +272,23 @@ Pager::~Pager() {
         const std::lock_guard lock(state_->mutex);
         state_->stopping = true;
     }
-    state_->ioWork.notify_all();
+    state_->reader.wake();
     state_->decodeWork.notify_all();
     for (std::thread& thread : state_->threads) thread.join();
 }
 
 void Pager::want(const std::vector<TileRequest>& wanted) {
     const std::lock_guard lock(state_->mutex);
-    KeySet before(state_->queue.begin(), state_->queue.end());
+    TileKeySet before(state_->queue.begin(), state_->queue.end());
     state_->queue.clear();
-    KeySet seen;
+    state_->wanted.clear();
     for (const TileRequest& request : wanted) {
         const TileKey key{request.layer, request.id};
-        if (seen.insert(key).second) state_->accept(key, before.erase(key) > 0);
+        if (state_->wanted.insert(key).second) state_->accept(key, before.erase(key) > 0);
     }
     state_->count.cancelled += before.size();
-    state_->dropUntaken(seen);
-    state_->ioWork.notify_one();
+    state_->dropUntaken();
+    state_->reader.wake();
     if (state_->isSettled()) state_->settled.notify_all();
 }
 

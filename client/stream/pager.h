@@ -7,6 +7,7 @@
 
 #include "client/stream/dataset_source.h"
 #include "client/stream/selection.h"
+#include "client/stream/tile_reads.h"
 
 namespace terray {
 
@@ -14,6 +15,8 @@ struct PagerOptions {
     uint64_t hostBudgetBytes = 1ull << 30;  ///< for decoded tiles held in main memory
     int decodeThreads = 0;                  ///< 0: one less than the cores, at least 1
     int maxRequestsInFlight = 16;
+    bool cancelReads = true;  ///< take back reads under way that are no longer wanted, where the source can
+    int64_t healMs = 10000;   ///< a tile that was damaged on its way is not asked for again before
 };
 
 /// A tile that has arrived, decoded and checked. Shared so that an eviction cannot pull it away from an upload.
@@ -25,34 +28,44 @@ struct LoadedTile {
     std::shared_ptr<const ImageryTile> imagery;  ///< for TileLayer::imagery
 };
 
+/// How a tile is lost.
+enum class Loss : uint8_t {
+    forGood,      ///< what is stored is damaged or missing: it is not asked for again
+    damaged,      ///< as it came over a network: it may be asked for again, a while later
+    unreachable,  ///< the server or the network is out of reach for now: it may be asked for again
+};
+
 /// A tile that could not be had: every request ends as a LoadedTile or as one of these, exactly once.
 struct FailedTile {
     TileLayer layer = TileLayer::heights;
     TileId id;
     std::string message;
+    Loss loss = Loss::forGood;
 };
 
 struct PagerStatistics {
     uint64_t requested = 0;  ///< put into the IO thread's queue; what stays wanted counts once
     uint64_t delivered = 0;  ///< taken, or waiting to be
     uint64_t failed = 0;
-    uint64_t cancelled = 0;  ///< no longer wanted before they were begun, or before they were taken
+    uint64_t cancelled = 0;  ///< no longer wanted before they were read, or before they were taken
     uint64_t hostHits = 0;   ///< answered from main memory instead
     uint64_t bytesRead = 0;  ///< stored bytes read from the source
     uint64_t hostBytes = 0;  ///< held now
     uint64_t evicted = 0;
+    TileReadStatistics reads;
 };
 
 /// Brings wanted tiles from a source to main memory without ever blocking the render thread: one IO thread reads in
-/// order of priority, workers decode. All functions are for the render thread.
+/// order of priority, one after the other from a disk, side by side over a network; workers decode. All functions are
+/// for the render thread.
 ///
-/// The queue is replaced by each want(): what is no longer wanted and not yet begun is cancelled, and so is what has
-/// arrived but was not taken; duplicates join. So never more tiles wait to be taken than the last want() named and were
-/// in flight then.
+/// The queue is replaced by each want(): what is no longer wanted is cancelled, over a network also while it is read,
+/// and so is what has arrived but was not taken; duplicates join. So never more tiles wait to be taken than the last
+/// want() named and were in flight then.
 /// Imagery brings its ancestors along, since its mip chain is gathered from them. A tile whose bytes are damaged is
-/// read once more; one that failed is not asked for again in this session, its ancestor goes on standing in. Main
-/// memory is an LRU cache under hostBudgetBytes; a tile whose descendants are held is kept as long as they are, and
-/// tiles in flight are counted before they arrive. A budget too small for what is in flight delays requests; one
+/// read once more; one that failed for good is not asked for again in this session, its ancestor goes on standing in.
+/// Main memory is an LRU cache under hostBudgetBytes; a tile whose descendants are held is kept as long as they are,
+/// and tiles in flight are counted before they arrive. A budget too small for what is in flight delays requests; one
 /// request (a height tile, or a photo tile with the ancestors it lacks) always proceeds, and only it may exceed the
 /// budget. Tiles delivered, taken or not, no longer count once the cache has let them go. At any time requested +
 /// hostHits = delivered + failed + cancelled + what is queued or in flight.

@@ -15,7 +15,7 @@
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
 #include "client/stream/camera.h"
-#include "client/stream/dataset_source.h"
+#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 #include "common/output_file.h"
 
@@ -37,7 +37,8 @@ struct ViewOptions {
 
 bool parse(ViewOptions& options, const std::vector<std::string>& arguments) {
     CommandLine line("terray-view", "Draws one picture of a dataset, when all of its tiles are loaded.");
-    line.positional("DATASET", options.dataset, "directory made by terray-preprocess").required();
+    line.positional("DATASET", options.dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME")
+        .required();
     line.flag("--headless", options.headless, "draw without a window");
     line.option("--camera", options.camera, "LON,LAT,HEIGHT,HEADING,PITCH[,FOV]",
                 "degrees and metres; X,Y instead of LON,LAT where the dataset has no coordinate system or this build "
@@ -111,14 +112,6 @@ MeasuredPicture measure(const Engine& engine, const Camera& camera) {
     return picture;
 }
 
-void refuseFailures(const FrameReport& report) {
-    if (report.failures.empty()) return;
-    std::string message = std::to_string(report.failures.size()) +
-                          " tiles of this view cannot be had, first: " + report.failures.front() +
-                          " (terray-preprocess verify lists all; no picture was written)";
-    throw Error(ExitCode::dataset, message);
-}
-
 }  // namespace
 
 ExitCode runView(const std::vector<std::string>& arguments) {
@@ -130,7 +123,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     const std::filesystem::path out = options.out;
     const PictureKind kind = kindOf(out);
 
-    const std::unique_ptr<TileSource> source = openLocalDataset(options.dataset);
+    const std::unique_ptr<TileSource> source = openDataset(options.dataset);
     EngineOptions chosen = engineOptions(options, kind, source->metadata());
     options.engine.place(*source, chosen);
     const std::optional<Camera> given = cameraOf(options, source->metadata());
@@ -144,7 +137,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     const Camera camera =
         given ? *given : overviewCamera(source->metadata(), aspect, engine.earth(), chosen.exaggeration);
     const FrameReport report = engine.drawFrame(camera, true);
-    refuseFailures(report);
+    requireAllTiles(report, "no picture was written");
     throwIfInterrupted();
     if (kind == PictureKind::png) {
         writePng(out, engine.targets().readSrgb().view());
