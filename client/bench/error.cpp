@@ -8,9 +8,9 @@
 #include "client/bench/error_report.h"
 #include "client/bench/manifest.h"
 #include "client/bench/run_directory.h"
+#include "client/engine/dataset_options.h"
 #include "client/engine/engine_options.h"
 #include "client/engine/program.h"
-#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 #include "common/output_file.h"
 
@@ -18,7 +18,7 @@ namespace terray {
 namespace {
 
 struct ErrorOptions {
-    std::string dataset;
+    DatasetCommandLine dataset;
     std::string flight;
     std::string out;
     std::string sweep;
@@ -40,8 +40,7 @@ void requireRange(const char* name, int64_t value, int64_t least, int64_t most) 
 
 bool parse(ErrorOptions& options, const std::vector<std::string>& arguments) {
     CommandLine line("terray-bench error", "Measures a flight's pictures against the truth, and how long they take.");
-    line.positional("DATASET", options.dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME")
-        .required();
+    options.dataset.declare(line);
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
     line.option("--out", options.out, "DIR", "for errors.csv, summary.json, manifest.json and maps/").required();
     line.option("--sweep", options.sweep, sweepNames(),
@@ -142,7 +141,7 @@ void write(RunDirectory& directory, const std::filesystem::path& tableFile, cons
 ExitCode runError(const std::vector<std::string>& arguments) {
     ErrorOptions options;
     if (!parse(options, arguments)) return ExitCode::ok;
-    const std::unique_ptr<TileSource> source = openDataset(options.dataset);
+    const std::unique_ptr<TileSource> source = options.dataset.open();
     const Flight flight = loadFlight(options.flight);
     EngineOptions base = options.engine.options(source->metadata().imageryLevel.has_value());
     options.engine.place(*source, base);
@@ -154,7 +153,7 @@ ExitCode runError(const std::vector<std::string>& arguments) {
     const HeadlessContext context;
     requireRendererFeatures();
     const RunDescription description{.program = "terray-bench error",
-                                     .dataset = options.dataset,
+                                     .dataset = options.dataset.place(),
                                      .source = *source,
                                      .flightFile = options.flight,
                                      .flight = flight,

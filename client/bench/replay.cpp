@@ -9,11 +9,11 @@
 #include "client/bench/manifest.h"
 #include "client/bench/progress_bar.h"
 #include "client/bench/run_directory.h"
+#include "client/engine/dataset_options.h"
 #include "client/engine/engine.h"
 #include "client/engine/engine_options.h"
 #include "client/engine/program.h"
 #include "client/stream/flight.h"
-#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 #if TERRAY_WITH_OUTPUT
 #include "client/output/picture.h"
@@ -23,7 +23,7 @@ namespace terray {
 namespace {
 
 struct ReplayOptions {
-    std::string dataset;
+    DatasetCommandLine dataset;
     std::string flight;
     std::string out;
     int width = 1280;
@@ -41,8 +41,7 @@ struct ReplayOptions {
 bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
     CommandLine line("terray-bench replay",
                      "Flies a flight frame by frame at a fixed rate and writes what each frame cost.");
-    line.positional("DATASET", options.dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME")
-        .required();
+    options.dataset.declare(line);
     line.option("--flight", options.flight, "FLIGHT.json", "made by terray-bench tour, or recorded").required();
     line.option("--out", options.out, "DIR", "for frames.csv, steps.csv, summary.json, manifest.json and frames/")
         .required();
@@ -209,7 +208,7 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
 ExitCode runReplay(const std::vector<std::string>& arguments) {
     ReplayOptions options;
     if (!parse(options, arguments)) return ExitCode::ok;
-    const std::unique_ptr<TileSource> source = openDataset(options.dataset);
+    const std::unique_ptr<TileSource> source = options.dataset.open();
     const Flight flight = loadFlight(options.flight);
     options.drawn = engineOptions(options, *source);  // refuses what is wrong before anything is created
 
@@ -217,7 +216,7 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
     const HeadlessContext context;
     requireRendererFeatures();
     const RunDescription description{.program = "terray-bench replay",
-                                     .dataset = options.dataset,
+                                     .dataset = options.dataset.place(),
                                      .source = *source,
                                      .flightFile = options.flight,
                                      .flight = flight,

@@ -4,21 +4,21 @@
 
 #include "client/bench/bench.h"
 #include "client/engine/dataset_camera.h"
+#include "client/engine/dataset_options.h"
 #include "client/engine/program.h"
 #include "client/stream/flight.h"
-#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 
 namespace terray {
 
 ExitCode runTour(const std::vector<std::string>& arguments) {
     constexpr double kMostSeconds = 86400;
-    std::string dataset;
+    DatasetCommandLine dataset;
     std::string out;
     double seconds = 30;
     bool force = false;
     CommandLine line("terray-bench tour", "Writes a standard flight made from the dataset's extent and heights.");
-    line.positional("DATASET", dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME").required();
+    dataset.declare(line);
     line.option("--out", out, "FLIGHT.json", "where the flight goes").required();
     line.option("--seconds", seconds, "S", "how long it takes (30)");
     line.flag("--force", force, "replace an existing flight");
@@ -28,7 +28,7 @@ ExitCode runTour(const std::vector<std::string>& arguments) {
     if (std::filesystem::exists(out) && !force)
         throw Error(ExitCode::output, out + " exists (give --force to replace it)");
 
-    const std::unique_ptr<TileSource> source = openDataset(dataset);
+    const std::unique_ptr<TileSource> source = dataset.open();
     const std::optional<Projection> projection = projectionOf(source->metadata());
     const Flight flight = standardTour(*source, seconds);
     throwIfInterrupted();

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "client/stream/dataset_source.h"
+#include "client/stream/disk_cache.h"
 
 namespace terray {
 
@@ -11,7 +12,9 @@ namespace terray {
 /// http(s)://HOST/PATH/heights.pmtiles of any server that answers range requests. A directory needs neither a server
 /// nor libcurl.
 ///
-/// Throws as openLocalDataset and openWebDataset; for an address Error(unsupported) in a build without libcurl.
-[[nodiscard]] std::unique_ptr<TileSource> openDataset(const std::string& place);
+/// @param diskCache  for an address: what was fetched, kept from run to run
+/// Throws as openLocalDataset and openWebDataset; for an address Error(unsupported) in a build without libcurl, for a
+/// directory with a disk cache Error(usage).
+[[nodiscard]] std::unique_ptr<TileSource> openDataset(const std::string& place, const DiskCacheOptions& diskCache = {});
 
 }  // namespace terray

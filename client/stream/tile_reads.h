@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/stream/dataset_source.h"
+#include "client/stream/disk_cache.h"
 
 namespace terray {
 
@@ -18,6 +19,7 @@ struct TileRead {
 struct TileReadStatistics {
     uint64_t receivedBytes = 0;  ///< that came from the source, directories and what was given up among them
     uint64_t retries = 0;        ///< of requests over a network
+    DiskCacheStatistics diskCache;
 };
 
 /// Reads of stored tiles that run side by side, driven by one thread that never waits for one of them: the pager's. A

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/checksum.h"
+
 namespace terray {
 namespace {
 
@@ -23,17 +25,23 @@ bool BlockingHttp::reachable() const {
     return reachable_;
 }
 
-WebArchive::WebArchive(std::string url, std::shared_ptr<BlockingHttp> http, HttpAnswer head)
+WebArchive::WebArchive(std::string url, std::shared_ptr<BlockingHttp> http, std::shared_ptr<DiskCache> cache,
+                       HttpAnswer head)
     : url_(std::move(url)),
       http_(std::move(http)),
       size_(head.totalBytes),
       etag_(std::move(head.etag)),
-      head_(std::move(head.body)) {}
+      head_(std::move(head.body)),
+      cache_(std::move(cache)),
+      // The head is in it because a server need not send ETags.
+      identity_(url_ + '\n' + std::to_string(size_) + '\n' + etag_ + '\n' + std::to_string(crc32c(head_))) {}
 
-Result<std::unique_ptr<WebArchive>> WebArchive::open(std::string url, std::shared_ptr<BlockingHttp> http) {
+Result<std::unique_ptr<WebArchive>> WebArchive::open(std::string url, std::shared_ptr<BlockingHttp> http,
+                                                     std::shared_ptr<DiskCache> cache) {
     HttpEnd end = http->fetch({.url = url, .range = {0, kHeadBytes}});
     if (!end.answer) return end.answer.failure();
-    return std::unique_ptr<WebArchive>(new WebArchive(std::move(url), std::move(http), *std::move(end.answer)));
+    return std::unique_ptr<WebArchive>(
+        new WebArchive(std::move(url), std::move(http), std::move(cache), *std::move(end.answer)));
 }
 
 Result<Bytes> WebArchive::read(uint64_t offset, uint64_t length) const {
@@ -46,6 +54,7 @@ Result<Bytes> WebArchive::read(uint64_t offset, uint64_t length) const {
         return Bytes(first, first + static_cast<ptrdiff_t>(length));
     }
     const ByteRange range{offset, length};
+    if (auto held = cached(range)) return *std::move(held);
     return accept(http_->fetch(request(range, false)).answer, range);
 }
 
@@ -56,7 +65,12 @@ Result<Bytes> WebArchive::accept(Result<HttpAnswer> answer, const ByteRange& ran
                        std::to_string(answer->totalBytes) + " bytes, ETag " + answer->etag + ", expected " +
                        std::to_string(size_) + ", " + etag_ + "); start anew"};
     if (answer->body.size() != range.length) return Failure{url_ + ": became shorter while it was read"};
+    if (cache_) cache_->write(identity_, range, answer->body);
     return std::move(answer->body);
+}
+
+std::optional<Bytes> WebArchive::cached(const ByteRange& range) const {
+    return cache_ ? cache_->read(identity_, range) : std::nullopt;
 }
 
 }  // namespace terray

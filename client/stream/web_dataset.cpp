@@ -26,8 +26,11 @@ using RemoteLayers = std::array<RemoteLayer, 2>;  ///< by TileLayer
 /// directory are joined.
 class WebReads final : public TileReads {
   public:
-    WebReads(const RemoteLayers& layers, const HttpOptions& options)
-        : layers_(layers), connections_(static_cast<size_t>(options.connections)), http_(options) {}
+    WebReads(const RemoteLayers& layers, const HttpOptions& options, std::shared_ptr<DiskCache> cache)
+        : layers_(layers),
+          connections_(static_cast<size_t>(options.connections)),
+          http_(options),
+          cache_(std::move(cache)) {}
 
     size_t atATime() const override { return connections_; }
     bool mayHeal() const override { return true; }
@@ -71,7 +74,9 @@ class WebReads final : public TileReads {
     void wake() override { http_.wake(); }
     TileReadStatistics statistics() const override {
         const HttpStatistics http = http_.statistics();
-        return {.receivedBytes = http.receivedBytes, .retries = http.retries};
+        return {.receivedBytes = http.receivedBytes,
+                .retries = http.retries,
+                .diskCache = cache_ ? cache_->statistics() : DiskCacheStatistics()};
     }
 
   private:
@@ -96,6 +101,12 @@ class WebReads final : public TileReads {
             return;
         }
         const ByteRange range = *read.lookup.range();
+        if (!read.again) {
+            if (auto held = archive.file->cached(range)) {
+                arrive(ticket, *std::move(held), true);
+                return;
+            }
+        }
         for (auto& [number, fetch] : fetches_) {
             if (!read.lookup.isLeaf() || fetch.layer != read.layer || fetch.range != range) continue;
             fetch.readers.push_back(ticket);
@@ -114,19 +125,22 @@ class WebReads final : public TileReads {
         fetches_.erase(found);
         const WebArchive& file = *layers_[static_cast<size_t>(fetch.layer)].file;
         Result<Bytes> bytes = file.accept(std::move(ended.answer), fetch.range);
-        for (const uint64_t ticket : fetch.readers) {
-            Read& read = reads_.at(ticket);
-            if (bytes && !read.lookup.isLeaf()) {
-                end(ticket, std::move(bytes), true);
-                return;  // a tile has one reader
-            }
-            if (!bytes) {
-                end(ticket, bytes.failure(), ended.reachable);
-            } else if (auto taken = read.lookup.takeLeaf(*bytes); !taken) {
-                end(ticket, taken.failure(), true);
-            } else {
-                goOn(ticket, read);
-            }
+        if (fetch.readers.size() == 1) {
+            arrive(fetch.readers.front(), std::move(bytes), ended.reachable);
+        } else {
+            for (const uint64_t ticket : fetch.readers) arrive(ticket, bytes, ended.reachable);
+        }
+    }
+
+    /// Takes the bytes that a read waited for: the tile, or a leaf directory on the way to it.
+    void arrive(uint64_t ticket, Result<Bytes> bytes, bool reachable) {
+        Read& read = reads_.at(ticket);
+        if (!bytes || !read.lookup.isLeaf()) {
+            end(ticket, std::move(bytes), reachable);
+        } else if (auto taken = read.lookup.takeLeaf(*bytes); !taken) {
+            end(ticket, taken.failure(), true);
+        } else {
+            goOn(ticket, read);
         }
     }
 
@@ -138,6 +152,7 @@ class WebReads final : public TileReads {
     const RemoteLayers layers_;
     const size_t connections_;
     HttpClient http_;
+    std::shared_ptr<DiskCache> cache_;
     std::unordered_map<uint64_t, Read> reads_;
     std::unordered_map<uint64_t, Fetch> fetches_;
     uint64_t fetchesBegun_ = 0;
@@ -147,7 +162,7 @@ class WebReads final : public TileReads {
 class WebDataset final : public TileSource {
   public:
     WebDataset(const std::string& address, const WebOptions& options, const std::shared_ptr<BlockingHttp>& http)
-        : options_(options), archives_(placeOf(address, http)) {
+        : options_(options), cache_(cacheOf(options.diskCache)), archives_(placeOf(address, http)) {
         readRoot(TileLayer::heights);
         if (metadata().imageryLevel) readRoot(TileLayer::imagery);
     }
@@ -163,13 +178,16 @@ class WebDataset final : public TileSource {
         RemoteLayers layers;
         for (const TileLayer layer : {TileLayer::heights, TileLayer::imagery})
             layers[static_cast<size_t>(layer)] = {archives_.archive(layer), files_[static_cast<size_t>(layer)]};
-        return std::make_unique<WebReads>(layers, options_.http);
+        return std::make_unique<WebReads>(layers, options_.http, cache_);
     }
 
   private:
+    static std::shared_ptr<DiskCache> cacheOf(const DiskCacheOptions& options) {
+        return options.directory.empty() ? nullptr : std::make_shared<DiskCache>(options);
+    }
     ArchivedDataset::Place placeOf(const std::string& address, const std::shared_ptr<BlockingHttp>& http) {
         const auto open = [this, address, http](const char* file) -> Result<std::unique_ptr<ByteSource>> {
-            auto archive = WebArchive::open(archiveAddress(address, file), http);
+            auto archive = WebArchive::open(archiveAddress(address, file), http, cache_);
             if (!archive) return archive.failure();
             files_[std::string_view(file) == kHeightsFile ? 0 : 1] = archive->get();
             return std::unique_ptr<ByteSource>(*std::move(archive));
@@ -191,6 +209,7 @@ class WebDataset final : public TileSource {
     }
 
     const WebOptions options_;
+    const std::shared_ptr<DiskCache> cache_;    ///< null: none
     std::array<const WebArchive*, 2> files_{};  ///< by TileLayer; archives_ owns them
     ArchivedDataset archives_;
     std::array<std::optional<Bytes>, 2> roots_;

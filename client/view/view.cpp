@@ -9,13 +9,13 @@
 #include <glm/common.hpp>
 
 #include "client/engine/dataset_camera.h"
+#include "client/engine/dataset_options.h"
 #include "client/engine/engine.h"
 #include "client/engine/engine_options.h"
 #include "client/engine/program.h"
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
 #include "client/stream/camera.h"
-#include "client/stream/open_dataset.h"
 #include "common/command_line.h"
 #include "common/output_file.h"
 
@@ -25,7 +25,7 @@ namespace {
 enum class PictureKind { png, exr };
 
 struct ViewOptions {
-    std::string dataset;
+    DatasetCommandLine dataset;
     bool headless = false;
     std::string camera;
     int width = 1280;
@@ -37,8 +37,7 @@ struct ViewOptions {
 
 bool parse(ViewOptions& options, const std::vector<std::string>& arguments) {
     CommandLine line("terray-view", "Draws one picture of a dataset, when all of its tiles are loaded.");
-    line.positional("DATASET", options.dataset, "directory made by terray-preprocess, or http(s)://HOST/NAME")
-        .required();
+    options.dataset.declare(line);
     line.flag("--headless", options.headless, "draw without a window");
     line.option("--camera", options.camera, "LON,LAT,HEIGHT,HEADING,PITCH[,FOV]",
                 "degrees and metres; X,Y instead of LON,LAT where the dataset has no coordinate system or this build "
@@ -123,7 +122,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     const std::filesystem::path out = options.out;
     const PictureKind kind = kindOf(out);
 
-    const std::unique_ptr<TileSource> source = openDataset(options.dataset);
+    const std::unique_ptr<TileSource> source = options.dataset.open();
     EngineOptions chosen = engineOptions(options, kind, source->metadata());
     options.engine.place(*source, chosen);
     const std::optional<Camera> given = cameraOf(options, source->metadata());

@@ -143,6 +143,32 @@ TEST_F(WebDataset, TakesBackReadsThatAreNoLongerWanted) {
     loadAll(pager);
 }
 
+TEST_F(WebDataset, FetchesNothingTwiceThatTheDiskCacheHolds) {
+    const TemporaryDirectory cache;
+    WebOptions options = kHasty;
+    options.diskCache.directory = cache.path();
+    for (const bool first : {true, false}) {
+        const auto web = openWebDataset(address("/of8"), options);
+        const uint64_t before = server_.requests();
+        Pager pager(*web, {.decodeThreads = 2});
+        loadAll(pager);
+        EXPECT_EQ(pager.statistics().reads.receivedBytes > 0, first);
+        EXPECT_EQ(server_.requests() > before, first);
+    }
+    // A tile that came damaged and was kept so is fetched past the cache.
+    options.diskCache.directory = cache / "other";
+    const auto web = openWebDataset(address("/of8"), options);
+    Pager pager(*web, {.decodeThreads = 2, .healMs = 0});
+    server_.setFault(Fault::corrupt, 0.5);
+    (void)load(pager, 50);
+    server_.setFault(Fault::none);
+    pager.want({});
+    pager.waitUntilSettled();
+    (void)pager.takeLoaded(1000);
+    (void)pager.takeFailed();
+    loadAll(pager);
+}
+
 TEST_F(WebDataset, SaysWhyItCannotBeOpened) {
     EXPECT_EQ(refusal(address("/nowhere")).code(), ExitCode::dataset);
     EXPECT_NE(std::string(refusal(address("/nowhere")).what()).find("404"), std::string::npos);
