@@ -204,6 +204,15 @@ std::optional<Stretch> GroundCaster::overGround(const Ray& ray) const {
     return part;
 }
 
+glm::dvec2 GroundCaster::nearestPlace(double x, double y) const {
+    // A little within the rim, so that rounding leaves it on the ground.
+    const double margin = 1e-6 * tiling_.finestSpacing;
+    const GridSize size = heights_.size();
+    const double east = tiling_.west + static_cast<double>(size.width) * tiling_.finestSpacing;
+    const double south = tiling_.north - static_cast<double>(size.height) * tiling_.finestSpacing;
+    return {std::clamp(x, tiling_.west + margin, east - margin), std::clamp(y, south + margin, tiling_.north - margin)};
+}
+
 std::optional<double> GroundCaster::heightAt(double x, double y) const {
     const double u = (x - tiling_.west) / tiling_.finestSpacing - 0.5;
     const double v = (tiling_.north - y) / tiling_.finestSpacing - 0.5;

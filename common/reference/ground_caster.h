@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "common/reference/reference_heights.h"
@@ -46,6 +47,9 @@ class GroundCaster {
 
     /// Height of the ground, metres, not exaggerated, at a place of the map; none where it has none.
     [[nodiscard]] std::optional<double> heightAt(double x, double y) const;
+
+    /// The place within the ground's rectangle, holes included, that is nearest to a place of the map.
+    [[nodiscard]] glm::dvec2 nearestPlace(double x, double y) const;
 
     /// Metres, as given.
     [[nodiscard]] double floor() const { return floor_; }

@@ -23,12 +23,17 @@ std::optional<glm::dvec2> seenAt(const View& view, glm::dvec3 place) {
     return scale * glm::dvec2(glm::dot(fromEye, view.right), glm::dot(fromEye, view.up));
 }
 
-/// How long the way from a drawn point straight up or down to the ground is on the picture.
+/// How long the way from a drawn point straight up or down to the ground is on the picture; from one beyond the
+/// ground's rim, the way to its side or, above that, to its edge.
 std::optional<double> verticalPixels(const GroundCaster& truth, const View& view, const glm::dvec3& place) {
-    const std::optional<double> height = truth.heightAt(place.x, place.y);
+    const glm::dvec2 nearest = truth.nearestPlace(place.x, place.y);
+    const bool beyond = glm::length(nearest - glm::dvec2(place)) > 1e-3;
+    const glm::dvec2 foot = beyond ? nearest : glm::dvec2(place);
+    const std::optional<double> height = truth.heightAt(foot.x, foot.y);
     if (!height) return std::nullopt;
+    const double z = beyond ? std::min(place.z, *height) : *height;
     const auto drawn = seenAt(view, {place.x, place.y, place.z * view.exaggeration});
-    const auto ground = seenAt(view, {place.x, place.y, *height * view.exaggeration});
+    const auto ground = seenAt(view, {foot.x, foot.y, z * view.exaggeration});
     if (!drawn || !ground) return std::nullopt;
     return glm::length(*drawn - *ground);
 }

@@ -81,6 +81,20 @@ TEST_F(PixelErrorTest, APointOnTheGroundsSideIsOnItsSurface) {
     EXPECT_NEAR(error.pixels, 0.001 / 100 * view_.focalPixels(), 1e-5);  // not the 10 m up to the ground's edge
 }
 
+TEST_F(PixelErrorTest, APointBeyondTheRimIsAsFarOffAsItsSideLooks) {
+    // Level, from the west, 10 m below the edge: the side is drawn 4 m too near, in the axis and beside it.
+    view_.eye = {-100, -2000, 10};
+    view_.forward = {1, 0, 0};
+    view_.up = {0, 0, 1};
+    EXPECT_NEAR(pixelError(truth_, view_, centre_, {true, 96, {-4, -2000, 10}}).pixels, 0, 1e-5);
+    const glm::ivec2 beside{90, 40};
+    const glm::dvec3 direction = view_.direction(beside.x + 0.5, beside.y + 0.5);
+    const glm::dvec3 place = view_.eye + 96.0 * direction;
+    const double offAxis = direction.y * 96 * view_.focalPixels();  // pixels times metres of depth
+    EXPECT_NEAR(pixelError(truth_, view_, beside, {true, 96, place}).pixels, std::abs(offAxis) * (1.0 / 96 - 1.0 / 100),
+                1e-4);
+}
+
 TEST_F(PixelErrorTest, HowDeepTheGroundsSideReachesIsNoError) {
     // From the west and below the surface: the side at x = 0 is met 40 m below its edge. Then the surface itself.
     view_.eye = {-100, -2000, -20};
