@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace terray {
 namespace {
@@ -204,13 +205,38 @@ std::optional<Stretch> GroundCaster::overGround(const Ray& ray) const {
     return part;
 }
 
-glm::dvec2 GroundCaster::nearestPlace(double x, double y) const {
-    // A little within the rim, so that rounding leaves it on the ground.
-    const double margin = 1e-6 * tiling_.finestSpacing;
-    const GridSize size = heights_.size();
-    const double east = tiling_.west + static_cast<double>(size.width) * tiling_.finestSpacing;
-    const double south = tiling_.north - static_cast<double>(size.height) * tiling_.finestSpacing;
-    return {std::clamp(x, tiling_.west + margin, east - margin), std::clamp(y, south + margin, tiling_.north - margin)};
+std::optional<glm::dvec3> GroundCaster::nearestEdge(double x, double y) const {
+    constexpr int kDirections = 16;
+    constexpr double kMostSamples = 256;
+    constexpr double kGrowth = std::numbers::sqrt2;  // of the circles
+    constexpr int kHalvings = 30;
+    const auto at = [&](int direction, double samples) -> std::optional<glm::dvec3> {
+        const double angle = 2 * std::numbers::pi * direction / kDirections;
+        const double metres = samples * tiling_.finestSpacing;
+        const glm::dvec2 place(x + metres * std::sin(angle), y + metres * std::cos(angle));
+        const std::optional<double> height = heightAt(place.x, place.y);
+        return height ? std::optional(glm::dvec3(place, *height)) : std::nullopt;
+    };
+    for (double circle = 0.25; circle <= kMostSamples; circle *= kGrowth) {
+        std::optional<glm::dvec3> nearest;
+        double least = circle;
+        for (int direction = 0; direction < kDirections; ++direction) {
+            std::optional<glm::dvec3> found = at(direction, circle);
+            if (!found) continue;
+            double without = 0, with = circle;
+            for (int n = 0; n < kHalvings; ++n) {
+                const double middle = (without + with) / 2;
+                const std::optional<glm::dvec3> nearer = at(direction, middle);
+                (nearer ? with : without) = middle;
+                if (nearer) found = nearer;
+            }
+            if (nearest && with >= least) continue;
+            nearest = found;
+            least = with;
+        }
+        if (nearest) return nearest;
+    }
+    return std::nullopt;
 }
 
 std::optional<double> GroundCaster::heightAt(double x, double y) const {

@@ -24,16 +24,19 @@ std::optional<glm::dvec2> seenAt(const View& view, glm::dvec3 place) {
 }
 
 /// How long the way from a drawn point straight up or down to the ground is on the picture; from one beyond the
-/// ground's rim, the way to its side or, above that, to its edge.
+/// ground's edge, the way to its side or, above that, to the edge.
 std::optional<double> verticalPixels(const GroundCaster& truth, const View& view, const glm::dvec3& place) {
-    const glm::dvec2 nearest = truth.nearestPlace(place.x, place.y);
-    const bool beyond = glm::length(nearest - glm::dvec2(place)) > 1e-3;
-    const glm::dvec2 foot = beyond ? nearest : glm::dvec2(place);
-    const std::optional<double> height = truth.heightAt(foot.x, foot.y);
-    if (!height) return std::nullopt;
-    const double z = beyond ? std::min(place.z, *height) : *height;
-    const auto drawn = seenAt(view, {place.x, place.y, place.z * view.exaggeration});
-    const auto ground = seenAt(view, {foot.x, foot.y, z * view.exaggeration});
+    glm::dvec3 foot = place;
+    if (const std::optional<double> height = truth.heightAt(place.x, place.y)) {
+        foot.z = *height;
+    } else {
+        const std::optional<glm::dvec3> edge = truth.nearestEdge(place.x, place.y);
+        if (!edge) return std::nullopt;
+        foot = {edge->x, edge->y, std::min(place.z, edge->z)};
+    }
+    const auto seen = [&](const glm::dvec3& at) { return seenAt(view, {at.x, at.y, at.z * view.exaggeration}); };
+    const auto drawn = seen(place);
+    const auto ground = seen(foot);
     if (!drawn || !ground) return std::nullopt;
     return glm::length(*drawn - *ground);
 }

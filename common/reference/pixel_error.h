@@ -30,7 +30,7 @@ struct PixelError {
     Kind kind = Kind::sky;
     /// How far the drawn point is from the true surface, in pixels: the shorter of two ways, up or down to the ground
     /// at that place of the map, as it projects, and along the ray to where that meets the ground, at its full length.
-    /// Beyond the ground's rim the first way goes to its side. (A point of a cliff, or of the ground's side, lies on
+    /// Beyond the ground's edge the first way goes to its side. (A point of a cliff, or of the ground's side, lies on
     /// the surface though the ground at its place is higher.)
     float pixels = 0;
     float depthMetres = 0;    ///< absolute difference of view depths

@@ -1,6 +1,7 @@
 #include "common/reference/pixel_error.h"
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <glm/geometric.hpp>
@@ -93,6 +94,21 @@ TEST_F(PixelErrorTest, APointBeyondTheRimIsAsFarOffAsItsSideLooks) {
     const double offAxis = direction.y * 96 * view_.focalPixels();  // pixels times metres of depth
     EXPECT_NEAR(pixelError(truth_, view_, beside, {true, 96, place}).pixels, std::abs(offAxis) * (1.0 / 96 - 1.0 / 100),
                 1e-4);
+}
+
+TEST_F(PixelErrorTest, AHolesEdgeIsFoundLikewise) {
+    // A hole of 200 m; 30 m from its western edge, and in the middle of it.
+    const FormulaHeights holed({400, 400}, [](int64_t x, int64_t y) {
+        return x >= 100 && x < 120 && y >= 100 && y < 120 ? std::numeric_limits<double>::quiet_NaN() : 20.0;
+    });
+    const GroundCaster truth(holed, kTiling, -100);
+    EXPECT_FALSE(truth.heightAt(1030, -1100).has_value());
+    const auto edge = truth.nearestEdge(1030, -1100);
+    ASSERT_TRUE(edge.has_value());
+    EXPECT_NEAR(edge->x, 1000, 1e-3);
+    EXPECT_NEAR(edge->z, 20, 1e-9);
+    EXPECT_NEAR(glm::length(*truth.nearestEdge(1100, -1100) - glm::dvec3(1100, -1100, 20)), 100, 2);
+    EXPECT_FALSE(truth.nearestEdge(1e6, 0).has_value());
 }
 
 TEST_F(PixelErrorTest, HowDeepTheGroundsSideReachesIsNoError) {
