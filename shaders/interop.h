@@ -43,6 +43,8 @@ using dvec4 = glm::dvec4;
 #define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
 #define TERRAY_UNIFORM_GEOMETRY 1  // locations of methods that rasterise geometry (GeometryPass)
 #define TERRAY_UNIFORM_INSIDE 2
+#define TERRAY_UNIFORM_SLACK 2
+#define TERRAY_UNIFORM_HOLED 1
 #define TERRAY_UNIFORM_ORIGIN 0  // locations of overlays, see overlay.vert and overlay.frag
 #define TERRAY_UNIFORM_GROWTH 1
 #define TERRAY_UNIFORM_COLOUR 2
@@ -148,6 +150,7 @@ struct ShadingParameters {
 struct MethodParameters {
     vec4 linear;  // x: least, y: most samples of a ray's way through a box; z: halvings
     vec4 hull;    // x: steps, y: more steps, twice as long; z: stride, in tiles, < 0: exponential; w: secant steps
+    vec4 cones;   // x: steps, y: reach in blocks, z: halvings
 };
 
 // In double, so that a sample's height depends on its place in the dataset and not on the tile that holds it.
@@ -170,7 +173,7 @@ struct EditedTileParameters {
 static_assert(sizeof(EditParameters) == 2 * 32);
 static_assert(sizeof(EditedTileParameters) == 3 * 32);
 static_assert(sizeof(ShadingParameters) == 16);
-static_assert(sizeof(MethodParameters) == 2 * 16);
+static_assert(sizeof(MethodParameters) == 3 * 16);
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);

@@ -5,6 +5,8 @@
 
 #if TERRAY_METHOD_LINEAR
 #include "methods/linear.glsl"
+#elif TERRAY_METHOD_CONES
+#include "methods/cones.glsl"
 #else
 #include "march.glsl"
 #endif

@@ -58,13 +58,22 @@ EngineOptions settled(EngineOptions options, const TileSource& source) {
     return options;
 }
 
-GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& options) {
+/// The greatest drop per squared metre over the middle of the dataset; it changes by parts in 100 over the largest.
+double greatestBend(const EarthModel& earth, const DatasetMetadata& metadata) {
+    const GroundRect ground = metadata.groundBounds();
+    const auto bend = earth.at({(ground.west + ground.east) / 2, (ground.south + ground.north) / 2, 0});
+    return bend ? std::max(bend->xx, bend->yy) + std::abs(bend->xy) / 2 : 0;
+}
+
+GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& options, const EarthModel& earth) {
     const bool imagery = usesImagery(source, options);
     return {.heightBudgetBytes = options.gpuHeightBytes,
             .imageryBudgetBytes = imagery ? options.gpuImageryBytes : 0,
             .heightTiles = source.metadata().heightTiles,
             .imageryTiles = imagery ? source.metadata().imageryTiles : 0,
-            .method = options.render.method,
+            .method = {.method = options.render.method,
+                       .tiling = source.metadata().tiling,
+                       .earthBend = greatestBend(earth, source.metadata())},
             .measurePreparation = options.measurePreparation};
 }
 
@@ -77,7 +86,7 @@ struct Engine::State {
                 viewOf(Camera(), width, height).focalPixels()),
           sunClock(options.sunTime ? std::optional<SunClock>(std::in_place, *options.sunTime, source.metadata())
                                    : std::nullopt),
-          resident(source, shaders, slotOptions(source, options), options.features.imagery),
+          resident(source, shaders, slotOptions(source, options, earth), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
           targets(width, height, options.features, options.colour),
           pager(source, options.pager) {}
@@ -220,6 +229,7 @@ void Engine::State::fillReport() {
     report.nodes = selection.nodes.size();
     report.casters = selection.casters.size();
     report.bilinearNodes = renderer.bilinearNodes();
+    if (const MethodTiles* tiles = resident.gpu().methodTiles()) report.triangles = tiles->takeTriangles();
     for (const DrawNode& node : selection.nodes)
         if (!node.heightsExact || !node.imageryExact) ++report.standIns;
     report.wanted = selection.wanted.size();

@@ -18,42 +18,60 @@ bool eyeOver(const interop::NodeParameters& node) {
 
 GeometryPass::GeometryPass(const ShaderLibrary& shaders, const GlVertexArray& boxes)
     : boxes_(boxes),
-      hullPrograms_(shaders, {"methods/hull.vert", "methods/hull.frag"}),
-      hullSidePrograms_(shaders, {"methods/side.vert", "methods/hull_side.frag"}),
-      hullInsidePrograms_(shaders, {"box.vert", "methods/hull_side.frag"}) {}
+      hull_{.surface = {shaders, {"methods/hull.vert", "methods/hull.frag"}},
+            .sides = {shaders, {"methods/side.vert", "methods/hull_side.frag"}}},
+      mesh_{.surface = {shaders, {"methods/mesh.vert", "methods/mesh.frag"}},
+            .sides = {shaders, {"methods/side.vert", "methods/mesh_side.frag"}}},
+      hullInside_(shaders, {"box.vert", "methods/hull_side.frag"}) {}
 
 void GeometryPass::begin(const CastFrame& frame) {
     TERRAY_CHECK(frame.methodTiles != nullptr);
-    frame.methodTiles->bind();
     features_ = frame.features.marching();
     features_.occlusion = false;
 }
 
-void GeometryPass::drawBox(const GlProgram& program, size_t node, bool inside) {
+void GeometryPass::drawSides(const CastFrame& frame, const GlProgram& program, size_t node) {
     glBindVertexArray(boxes_.name());
     glUseProgram(program.name());
     glUniform1ui(TERRAY_UNIFORM_NODE, static_cast<GLuint>(node));
-    glUniform1i(TERRAY_UNIFORM_INSIDE, inside ? 1 : 0);
-    glCullFace(inside ? GL_FRONT : GL_BACK);
-    glDrawElements(GL_TRIANGLES, inside ? kBoxIndices : kSideIndices, GL_UNSIGNED_BYTE, nullptr);
+    if (features_.method == Method::hull) {
+        glUniform1i(TERRAY_UNIFORM_INSIDE, 0);
+    } else {
+        glUniform1f(TERRAY_UNIFORM_SLACK, frame.methodTiles->slack(frame.nodes[node].source.x));
+    }
+    glCullFace(GL_BACK);
+    glDrawElements(GL_TRIANGLES, kSideIndices, GL_UNSIGNED_BYTE, nullptr);
+}
+
+void GeometryPass::drawInside(const GlProgram& program, size_t node) {
+    glBindVertexArray(boxes_.name());
+    glUseProgram(program.name());
+    glUniform1ui(TERRAY_UNIFORM_NODE, static_cast<GLuint>(node));
+    glUniform1i(TERRAY_UNIFORM_INSIDE, 1);
+    glCullFace(GL_FRONT);
+    glDrawElements(GL_TRIANGLES, kBoxIndices, GL_UNSIGNED_BYTE, nullptr);
+}
+
+void GeometryPass::drawSurface(const CastFrame& frame, const GlProgram& program, size_t node) {
+    glUseProgram(program.name());
+    glUniform1ui(TERRAY_UNIFORM_NODE, static_cast<GLuint>(node));
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
+    for (GLenum plane = 0; plane < 4; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    frame.methodTiles->draw(frame.nodes[node]);
+    for (GLenum plane = 0; plane < 4; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    glFrontFace(GL_CW);
 }
 
 void GeometryPass::draw(const CastFrame& frame, size_t node) {
     const interop::NodeParameters& parameters = frame.nodes[node];
     FeatureSet features = features_;
     features.bilinear = (parameters.source.w & TERRAY_BILINEAR_BIT) != 0;
-    drawBox(hullSidePrograms_.get(features), node, false);
-    if (eyeOver(parameters)) drawBox(hullInsidePrograms_.get(features), node, true);
-
-    const GlProgram& program = hullPrograms_.get(features);
-    glUseProgram(program.name());
-    glUniform1ui(TERRAY_UNIFORM_NODE, static_cast<GLuint>(node));
-    glCullFace(GL_BACK);
-    glFrontFace(GL_CCW);
-    for (GLenum plane = 0; plane < 4; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
-    frame.methodTiles->draw(parameters);
-    for (GLenum plane = 0; plane < 4; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
-    glFrontFace(GL_CW);
+    Programs& programs = features_.method == Method::hull ? hull_ : mesh_;
+    // Triangles first: what they hide of the sides is not shaded.
+    drawSurface(frame, programs.surface.get(features), node);
+    drawSides(frame, programs.sides.get(features), node);
+    if (features_.method == Method::hull && eyeOver(parameters)) drawInside(hullInside_.get(features), node);
 }
 
 }  // namespace terray

@@ -20,12 +20,19 @@ class GeometryPass {
     void draw(const CastFrame& frame, size_t node);
 
   private:
-    void drawBox(const GlProgram& program, size_t node, bool inside);
+    /// The programs of a method; each is compiled when it is first drawn.
+    struct Programs {
+        ProgramCache surface;  ///< the method's triangles
+        ProgramCache sides;    ///< the sides of a node's box
+    };
+    void drawSides(const CastFrame& frame, const GlProgram& program, size_t node);
+    void drawInside(const GlProgram& program, size_t node);
+    void drawSurface(const CastFrame& frame, const GlProgram& program, size_t node);
 
     const GlVertexArray& boxes_;
-    ProgramCache hullPrograms_;
-    ProgramCache hullSidePrograms_;
-    ProgramCache hullInsidePrograms_;
+    Programs hull_;
+    Programs mesh_;
+    ProgramCache hullInside_;  ///< from an eye over the node, below the pushed-up mesh
     FeatureSet features_;
 };
 

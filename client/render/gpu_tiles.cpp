@@ -140,7 +140,13 @@ GpuTiles::Upload GpuTiles::uploadHeights(const HeightTile& tile, const EditedTil
     glTextureSubImage3D(heightTexture_.name(), 0, 0, 0, static_cast<GLint>(place->slot), kHeightTileSide,
                         kHeightTileSide, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, tile.codes.cells().data());
     if (edited != nullptr) edit(place->slot, tile, *edited);
-    prepare(tile, place->slot);
+    const ResidentHeights& resident = residentHeights_[tile.id];
+    prepare({.id = tile.id,
+             .slot = place->slot,
+             .heightTexture = heightTexture_.name(),
+             .encoding = resident.encoding,
+             .record = resident.record,
+             .codes = edited != nullptr ? nullptr : &tile.codes});
     if (edited != nullptr && timer != nullptr) timer->enter(GpuPass::upload);
     return {.done = true, .evicted = place->evicted};
 }
@@ -190,7 +196,7 @@ void GpuTiles::buildMaxima(uint32_t slot) {
 }
 
 /// The clock is around glFinish, since a method may work on either processor.
-void GpuTiles::prepare(const HeightTile& tile, uint32_t slot) {
+void GpuTiles::prepare(const PreparedTile& tile) {
     const auto timed = [this](double& milliseconds, const auto& work) {
         if (!measurePreparation_) return work();
         glFinish();
@@ -199,8 +205,8 @@ void GpuTiles::prepare(const HeightTile& tile, uint32_t slot) {
         glFinish();
         milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     };
-    timed(preparation_.pyramidMs, [&] { buildMaxima(slot); });
-    if (methodTiles_) timed(preparation_.methodMs, [&] { methodTiles_->build(tile, slot, heightTexture_.name()); });
+    timed(preparation_.pyramidMs, [&] { buildMaxima(tile.slot); });
+    if (methodTiles_) timed(preparation_.methodMs, [&] { methodTiles_->build(tile); });
     preparation_.tiles += measurePreparation_ ? 1 : 0;
 }
 

@@ -28,7 +28,7 @@ struct GpuTilesOptions {
     /// all.
     uint64_t heightTiles = 0;
     uint64_t imageryTiles = 0;
-    MethodOptions method;  ///< what is kept of each height tile beside its pyramid
+    MethodScene method;  ///< what is kept of each height tile beside its pyramid
     /// Measure Preparation; uploads then wait for the GPU.
     bool measurePreparation = false;
 };
@@ -129,7 +129,7 @@ class GpuTiles {
   private:
     void edit(uint32_t slot, const HeightTile& tile, const EditedTile& edited);
     void buildMaxima(uint32_t slot);
-    void prepare(const HeightTile& tile, uint32_t slot);
+    void prepare(const PreparedTile& tile);
 
     const ShaderLibrary& shaders_;
     SlotTable heightSlots_;

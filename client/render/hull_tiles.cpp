@@ -28,12 +28,12 @@ HullTiles::HullTiles(int side, uint32_t slots, const ShaderLibrary& shaders)
     glNamedBufferStorage(pushes_.name(), static_cast<GLsizeiptr>(sizeof(float)) * side * side, nullptr, 0);
 }
 
-void HullTiles::build(const HeightTile&, uint32_t slot, GLuint heightTexture) {
+void HullTiles::build(const PreparedTile& tile) {
     glUseProgram(program_.name());
-    glBindTextureUnit(TERRAY_UNIT_HEIGHTS, heightTexture);
+    glBindTextureUnit(TERRAY_UNIT_HEIGHTS, tile.heightTexture);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, pushes_.name());
     glBindImageTexture(0, hulls_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R32F);
-    glUniform2i(0, static_cast<GLint>(slot), side_);
+    glUniform2i(0, static_cast<GLint>(tile.slot), side_);
     glUniform1i(1, 0);  // steps one and two: quads
     glDispatchCompute(groupsOver(side_), groupsOver(side_), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -54,6 +54,7 @@ void HullTiles::draw(const interop::NodeParameters& node) const {
     const GLint column = first(node.boxMin.x), row = first(node.boxMin.y);
     const GLint columns = last(node.boxMax.x) - column, rows = last(node.boxMax.y) - row;
     glUniform3i(TERRAY_UNIFORM_GEOMETRY, column, row, side_);
+    triangles_ += 2 * static_cast<uint64_t>(columns) * static_cast<uint64_t>(rows);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (columns + 1), rows);
 }
 

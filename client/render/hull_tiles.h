@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "client/render/method_tiles.h"
 
 namespace terray {
@@ -16,9 +18,11 @@ class HullTiles final : public MethodTiles {
   public:
     /// @param side  a power of two, 16 .. 256
     HullTiles(int side, uint32_t slots, const ShaderLibrary& shaders);
-    void build(const HeightTile& tile, uint32_t slot, GLuint heightTexture) override;
+    void build(const PreparedTile& tile) override;
     void bind() const override;
     void draw(const interop::NodeParameters& node) const override;
+    [[nodiscard]] float slack(uint32_t) const override { return 0; }
+    [[nodiscard]] uint64_t takeTriangles() const override { return std::exchange(triangles_, 0); }
     [[nodiscard]] uint64_t bytes() const override;
 
     /// R32F, (side + 1)^2 texels a slot: heights of vertices in codes; below every code where no ground is near.
@@ -30,6 +34,7 @@ class HullTiles final : public MethodTiles {
     GlTexture hulls_;
     GlBuffer pushes_;  ///< of the tile that is built: codes for each quad
     GlProgram program_;
+    mutable uint64_t triangles_ = 0;
 };
 
 }  // namespace terray

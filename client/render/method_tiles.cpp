@@ -1,13 +1,18 @@
 #include "client/render/method_tiles.h"
 
+#include "client/render/cone_tiles.h"
 #include "client/render/hull_tiles.h"
+#include "client/render/mesh_tiles.h"
 
 namespace terray {
 
-std::unique_ptr<MethodTiles> makeMethodTiles(const MethodOptions& options, uint32_t slots,
-                                             const ShaderLibrary& shaders) {
-    if (options.method == Method::hull)
-        return std::make_unique<HullTiles>(static_cast<int>(options.quads), slots, shaders);
+std::unique_ptr<MethodTiles> makeMethodTiles(const MethodScene& scene, uint32_t slots, const ShaderLibrary& shaders) {
+    if (scene.method.method == Method::hull)
+        return std::make_unique<HullTiles>(static_cast<int>(scene.method.quads), slots, shaders);
+    if (scene.method.method == Method::mesh) return std::make_unique<MeshTiles>(scene, slots);
+    if (scene.method.method == Method::cones)
+        return std::make_unique<ConeTiles>(static_cast<int>(scene.method.blocks), static_cast<int>(scene.method.reach),
+                                           slots, shaders);
     return nullptr;
 }
 

@@ -7,8 +7,19 @@
 #include "client/render/method.h"
 #include "client/render/shader_library.h"
 #include "common/height_tile.h"
+#include "common/tiling.h"
 
 namespace terray {
+
+/// A height tile that lies in a layer of the height array, codes and pyramid, as it is drawn.
+struct PreparedTile {
+    TileId id;
+    uint32_t slot = 0;
+    GLuint heightTexture = 0;
+    HeightEncoding encoding;
+    HeightRecord record;
+    const Grid<uint16_t>* codes = nullptr;  ///< null: edited, so only the GPU has them
+};
 
 /// What a method keeps on the GPU of each resident height tile, beside its heights and their pyramid, and the geometry
 /// that it makes of it. GL thread only.
@@ -18,13 +29,17 @@ class MethodTiles {
     MethodTiles(const MethodTiles&) = delete;
     MethodTiles& operator=(const MethodTiles&) = delete;
 
-    /// Makes it for a tile whose codes and pyramid lie in a layer of the height array, in place of what the layer had
-    /// before. Changes the current program, texture unit 0, image unit 0 and storage buffer 0.
-    virtual void build(const HeightTile& tile, uint32_t slot, GLuint heightTexture) = 0;
+    /// Makes it for a tile, in place of what its layer had before. Changes the current program, texture unit 0, image
+    /// unit 0 and storage buffer 0.
+    virtual void build(const PreparedTile& tile) = 0;
     /// Binds what the method's programs read beside heights.
     virtual void bind() const = 0;
     /// Draws the triangles that the method has for a node, by the program in use. Nothing for methods without geometry.
     virtual void draw(const interop::NodeParameters& node) const = 0;
+    /// How far a slot's geometry may lie from the ground, codes.
+    [[nodiscard]] virtual float slack(uint32_t slot) const = 0;
+    /// Triangles that draw() has drawn since it was asked last.
+    [[nodiscard]] virtual uint64_t takeTriangles() const = 0;
     /// Allocated.
     [[nodiscard]] virtual uint64_t bytes() const = 0;
 
@@ -32,8 +47,15 @@ class MethodTiles {
     MethodTiles() = default;
 };
 
+/// What tiles are prepared for.
+struct MethodScene {
+    MethodOptions method;
+    Tiling tiling;
+    double earthBend = 0;  ///< the greatest drop of the earth per squared metre; 0: flat
+};
+
 /// For so many slots; null when the method needs nothing. @param shaders  outlives the object
-[[nodiscard]] std::unique_ptr<MethodTiles> makeMethodTiles(const MethodOptions& options, uint32_t slots,
+[[nodiscard]] std::unique_ptr<MethodTiles> makeMethodTiles(const MethodScene& scene, uint32_t slots,
                                                            const ShaderLibrary& shaders);
 
 }  // namespace terray

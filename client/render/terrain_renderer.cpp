@@ -151,8 +151,9 @@ void TerrainRenderer::bindShading(const RenderOptions& options) {
     glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_SHADING, shadingBuffer_.name());
 }
 
-void TerrainRenderer::bindMethod(const MethodOptions& options) {
+void TerrainRenderer::bindMethod(const MethodOptions& options, const GpuTiles& tiles) {
     if (entryOf(options.method).define.empty()) return;
+    if (tiles.methodTiles() != nullptr) tiles.methodTiles()->bind();
     const interop::MethodParameters parameters = methodParameters(options);
     if (!methodBuffer_) {
         methodBuffer_ = makeBuffer();
@@ -263,7 +264,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     }
     glViewport(0, 0, view.width, view.height);
     bindShading(options);
-    bindMethod(options.method);
+    bindMethod(options.method, tiles);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);
 
     CastFrame frame{.view = view,

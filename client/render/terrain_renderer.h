@@ -109,7 +109,7 @@ class TerrainRenderer {
     void uploadFrame(const View& view, const RenderOptions& options);
     void makeSky(const View& view, const RenderOptions& options);
     void bindShading(const RenderOptions& options);
-    void bindMethod(const MethodOptions& options);
+    void bindMethod(const MethodOptions& options, const GpuTiles& tiles);
     void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
 
     const ShaderLibrary& shaders_;

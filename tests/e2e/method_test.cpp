@@ -64,7 +64,10 @@ class MethodTest : public testing::Test {
 };
 
 /// Methods that look for the surface at samples of the ray, with enough of them for the scenes below.
-const char* const kSearches[] = {"linear:least=1024,most=2048", "hull:stride=0.05,steps=600,more=600"};
+const char* const kSearches[] = {"linear:least=1024,most=2048", "hull:stride=0.05,steps=600,more=600",
+                                 "cones:steps=2000"};
+/// And the one that has triangles instead, as close as they get.
+const char* const kMesh = "mesh:error=0";
 
 TEST_F(MethodTest, EverySearchFindsAPlaneAndAConeAndAStep) {
     const HeightFunction plane = [](int64_t, int64_t) { return 250.0f; };
@@ -84,7 +87,8 @@ TEST_F(MethodTest, EverySearchFindsAPlaneAndAConeAndAStep) {
                     found += compare(*engine, *pyramid, cameraAt({1300, 4200, 480}, 60, pitch, 60), 1);
                 EXPECT_GT(found.ground, 20000) << method;
                 EXPECT_LE(found.seeThrough + found.coversSky, found.ground / 1000) << method;
-                EXPECT_LE(found.far, found.ground / 100) << method;
+                // A search steps past parts of a stair of columns, cones with steps of a whole sample.
+                EXPECT_LE(found.far, found.ground / 40) << method;
             }
     }
 }
@@ -97,9 +101,11 @@ TEST_F(MethodTest, StreamedGroundWithHolesAndLevelJumpsIsDrawnByEveryMethod) {
     };
     const ComputedDataset dataset(holed, {2048, 2048}, 2);
     for (const bool curved : {false, true})
-        for (const std::string method : {"march", "linear", "hull:stride=0.2,steps=100,more=300"}) {
+        for (const std::string method :
+             {"march", "linear", "hull:stride=0.2,steps=100,more=300", "cones", "mesh:error=0.1"}) {
             EngineOptions options = inspectedOptions();
             options.gpuHeightBytes = 6 * 720'000;  // ancestors stand in beside finer tiles
+            options.render.method = methodNamed(method);
             if (curved) options.earth = {.shape = EarthShape::curved, .refraction = -200};
             const auto engine = engineWith(dataset.source(), method, options);
             const auto pyramid = engineWith(dataset.source(), "pyramid", options);
@@ -107,9 +113,48 @@ TEST_F(MethodTest, StreamedGroundWithHolesAndLevelJumpsIsDrawnByEveryMethod) {
             for (const double heading : {20.0, 140.0, 260.0})
                 found += compare(*engine, *pyramid, cameraAt({3000, 3000, 450}, heading, -25, 60), 2);
             EXPECT_GT(found.ground, 20000) << method << (curved ? " curved" : "");
-            EXPECT_LE(found.seeThrough + found.coversSky, found.ground / 50) << method << (curved ? " curved" : "");
-            EXPECT_LE(found.far, found.ground / 20) << method << (curved ? " curved" : "");
+            // Triangles have no walls down into holes: sky, or what is farther away, is seen there.
+            const bool walls = options.render.method.method != Method::mesh;
+            EXPECT_LE(found.seeThrough + found.coversSky, found.ground / (walls ? 50 : 15)) << method << curved;
+            EXPECT_LE(found.far, found.ground / (walls ? 20 : 8)) << method << curved;
         }
+}
+
+TEST_F(MethodTest, TrianglesOfEverySampleAreThePatchesButForTheirDiagonals) {
+    const HeightFunction cone = [](int64_t column, int64_t row) {
+        return static_cast<float>(
+            400 - 0.8 * std::hypot(static_cast<double>(column) - 511.5, static_cast<double>(row) - 511.5));
+    };
+    const ComputedDataset dataset(cone, {1024, 1024}, 1);
+    const auto mesh = engineWith(dataset.source(), kMesh, inspectedOptions(Surface::bilinear));
+    const auto pyramid = engineWith(dataset.source(), "pyramid", inspectedOptions(Surface::bilinear));
+    Difference found;
+    for (const double pitch : {-60.0, -30.0, -12.0, 0.0})
+        for (const double heading : {60.0, 150.0, 300.0})
+            found += compare(*mesh, *pyramid, cameraAt({1500, 4500, 480}, heading, pitch, 60), 1);
+    EXPECT_GT(found.ground, 50000);
+    // Only the skyline may be told either way, by half a pixel.
+    EXPECT_LE(found.seeThrough + found.coversSky, found.ground / 1000);
+    EXPECT_EQ(found.far, 0);
+}
+
+TEST_F(MethodTest, NoHoleShowsBetweenTrianglesOfTilesOfAnyLevel) {
+    const ComputedDataset dataset(4096, 5, 42);
+    for (const uint64_t slots : {3, 8, 40}) {
+        EngineOptions options = inspectedOptions(Surface::bilinear);
+        options.gpuHeightBytes = slots * 720'000;
+        const auto mesh = engineWith(dataset.source(), "mesh", options);
+        const auto pyramid = engineWith(dataset.source(), "pyramid", options);
+        const glm::dvec3 middle(1000 + 10240, 5000 - 10240, dataset.source().metadata().maxHeight);
+        Difference found;
+        for (const double heading : {15.0, 100.0, 200.0, 290.0})
+            for (const double pitch : {-80.0, -30.0, -8.0})
+                found += compare(*mesh, *pyramid, cameraAt(middle, heading, pitch, 60), 5);
+        EXPECT_GT(found.ground, 100'000);
+        // Only the skyline may be told either way, by half a pixel.
+        EXPECT_LE(found.seeThrough, found.ground / 1000) << slots;
+        EXPECT_LE(found.coversSky, found.ground / 1000) << slots;
+    }
 }
 
 TEST_F(MethodTest, AFewSamplesMissAWallThatThePyramidHits) {

@@ -48,7 +48,7 @@ class HullTilesTest : public GlTest {
   protected:
     Hull hullOf(const HeightTile& tile, int side) {
         const MethodOptions method{.method = Method::hull, .quads = static_cast<double>(side)};
-        GpuTiles tiles(shaders_, {.heightTiles = 1, .method = method});
+        GpuTiles tiles(shaders_, {.heightTiles = 1, .method = {.method = method}});
         EXPECT_TRUE(tiles.uploadHeights(tile).done);
         const auto& hulls = dynamic_cast<const HullTiles&>(*tiles.methodTiles());
         EXPECT_EQ(tiles.allocatedBytes().method, hulls.bytes());
