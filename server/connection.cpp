@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <boost/asio/async_result.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <sys/socket.h>
@@ -29,7 +30,7 @@ int64_t unixMilliseconds() {
         .count();
 }
 
-iovec pieceOf(const std::string& text) {
+iovec pieceOf(std::string_view text) {
     return {const_cast<char*>(text.data()), text.size()};  // sendmsg only reads it
 }
 
@@ -107,44 +108,89 @@ Awaitable<Connection::Head> Connection::receiveHead() {
 Awaitable<bool> Connection::answer(const Head& head) {
     const auto begin = Clock::now();
     const auto* request = std::get_if<Request>(&head);
-    Metrics& metrics = worker_.shared().metrics;
     Response response;
     if (request != nullptr) {
-        response = respond(*request, *worker_.catalogue(), metrics);
+        response = respond(*request, *worker_.catalogue(), worker_.shared().metrics);
     } else {
         const auto& reason = std::get<Refusal>(head);
         response = refusal(reason.status, reason.message);
         response.closes = true;
+        ends_ = false;  // a head that came too late is still answered
     }
-    ends_ = false;  // a head that came too late is still answered
+    TileBytes tile;
+    const auto* slice = std::get_if<ArchiveSlice>(&response.body);
+    if (worker_.shared().tiles != nullptr && slice != nullptr && slice->tile && response.bytesToSend() > 0) {
+        // A name for it: GCC 12 destroys a temporary argument of an awaited call twice.
+        const StoredTile stored{slice->archive, *slice->tile, slice->range};
+        tile = co_await fetch(stored);
+        if (!tile) response = refusal(500, "the tile cannot be read; the server's operator should verify the dataset");
+    }
     const bool keepAlive = !response.closes && !worker_.isStopping();
-    const std::string text = writeHead(
-        response,
-        {.version = request != nullptr ? request->version : 11, .keepAlive = keepAlive, .date = worker_.date()});
-    co_await send(response, text);
-    const auto time = since(begin);
-    metrics.count(response.status, sent_, time, !failed_);
-    if (worker_.shared().log->isOn())
-        worker_.shared().log->write({.unixMilliseconds = unixMilliseconds(),
-                                     .client = peer_,
-                                     .method = request != nullptr ? request->method : "-",
-                                     .target = request != nullptr ? request->target : "-",
-                                     .status = response.status,
-                                     .bytes = sent_,
-                                     .microseconds = time.count(),
-                                     .whole = !failed_});
+    const HeadContext context = {
+        .version = request != nullptr ? request->version : 11, .keepAlive = keepAlive, .date = worker_.date()};
+    std::string text = writeHead(response, context);
+    co_await send(response, std::move(text), std::move(tile));
+    account(request, response.status, since(begin));
     co_return keepAlive && !failed_;
 }
 
-Awaitable<void> Connection::send(const Response& response, const std::string& head) {
+void Connection::account(const Request* request, int status, std::chrono::microseconds time) {
+    worker_.shared().metrics.count(status, sent_, time, !failed_);
+    if (!worker_.shared().log->isOn()) return;
+    worker_.shared().log->write({.unixMilliseconds = unixMilliseconds(),
+                                 .client = peer_,
+                                 .method = request != nullptr ? request->method : "-",
+                                 .target = request != nullptr ? request->target : "-",
+                                 .status = status,
+                                 .bytes = sent_,
+                                 .microseconds = time.count(),
+                                 .whole = !failed_});
+}
+
+Awaitable<TileBytes> Connection::fetch(const StoredTile& tile) {
+    TileStore& tiles = *worker_.shared().tiles;
+    if (TileBytes kept = tiles.find(tile)) co_return kept;
+    // A reader's thread brings the bytes; the coroutine goes on with them on its own.
+    const auto begin = [&](auto handler) {
+        const auto resume = std::make_shared<decltype(handler)>(std::move(handler));
+        tiles.read(tile, [resume, executor = socket_.get_executor()](TileBytes bytes) {
+            asio::post(executor, [resume, bytes = std::move(bytes)]() mutable { (*resume)(std::move(bytes)); });
+        });
+    };
+    co_return co_await asio::async_initiate<decltype(kAwait), void(TileBytes)>(begin, kAwait);
+}
+
+Awaitable<void> Connection::send(const Response& response, std::string head, TileBytes tile) {
     sent_ = paced_ = 0;
     extendDeadline(worker_.limits().idleTimeout);
     const bool hasBody = response.bytesToSend() > 0;
-    const auto* slice = std::get_if<ArchiveSlice>(&response.body);
-    const auto* text = std::get_if<std::string>(&response.body);
-    std::array<iovec, 2> pieces = {pieceOf(head), hasBody && text != nullptr ? pieceOf(*text) : iovec{}};
-    co_await sendPieces(pieces, hasBody && slice != nullptr);
-    if (hasBody && slice != nullptr && !failed_) co_await sendSlice(*slice);
+    const auto* slice = hasBody ? std::get_if<ArchiveSlice>(&response.body) : nullptr;
+    const auto* text = hasBody ? std::get_if<std::string>(&response.body) : nullptr;
+    // A client that has to be waited for gets the rest from the file: only clients that keep up hold tiles in memory.
+    const size_t atOnce = tile ? sendAtOnce(head, *tile) : 0;
+    tile.reset();
+    std::array<iovec, 2> pieces = {pieceOf(std::string_view(head).substr(std::min(atOnce, head.size()))),
+                                   text != nullptr ? pieceOf(*text) : iovec{}};
+    co_await sendPieces(pieces, slice != nullptr);
+    if (slice != nullptr && !failed_) {
+        const size_t done = atOnce - std::min(atOnce, head.size());
+        co_await sendSlice(*slice, done);
+    }
+}
+
+size_t Connection::sendAtOnce(std::string_view head, const Bytes& tile) {
+    const std::string_view body(reinterpret_cast<const char*>(tile.data()), tile.size());
+    size_t done = 0;
+    while (done < head.size() + body.size()) {
+        const size_t ofHead = std::min(done, head.size());
+        const std::array<iovec, 2> pieces = {pieceOf(head.substr(ofHead)), pieceOf(body.substr(done - ofHead))};
+        const IoStep step = sendSome(socket_.native_handle(), pieces, false);
+        if (step.outcome == Outcome::ended) failed_ = true;
+        if (step.outcome != Outcome::progressed) break;
+        done += step.bytes;
+    }
+    sent_ = paced_ = done;
+    return done;
 }
 
 Awaitable<void> Connection::sendPieces(std::span<iovec> pieces, bool moreFollows) {
@@ -163,9 +209,8 @@ Awaitable<void> Connection::sendPieces(std::span<iovec> pieces, bool moreFollows
     }
 }
 
-Awaitable<void> Connection::sendSlice(const ArchiveSlice& slice) {
+Awaitable<void> Connection::sendSlice(const ArchiveSlice& slice, uint64_t done) {
     const int file = slice.archive->descriptor();
-    uint64_t done = 0;
     while (!failed_ && done < slice.range.length) {
         const size_t chunk = std::min<uint64_t>(slice.range.length - done, kFileChunk);
         const IoStep step = sendFileSome(socket_.native_handle(), file, slice.range.offset + done, chunk);

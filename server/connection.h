@@ -36,10 +36,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Awaitable<bool> wait(Socket::wait_type type);
     /// Answers one head. @return whether another may follow
     Awaitable<bool> answer(const Head& head);
-    /// Sends an answer. @return bytes sent; all of them unless `failed_`
-    Awaitable<void> send(const Response& response, const std::string& head);
+    /// A tile's bytes through the store; waits if they have to be read. Null: they cannot be.
+    Awaitable<TileBytes> fetch(const StoredTile& tile);
+    /// Sends an answer, to its end unless `failed_`. @param tile  bytes of the body if they are at hand
+    Awaitable<void> send(const Response& response, std::string head, TileBytes tile);
+    /// Sends head and tile from memory as far as the client takes them without waiting. @return bytes of both sent
+    [[nodiscard]] size_t sendAtOnce(std::string_view head, const Bytes& tile);
     Awaitable<void> sendPieces(std::span<iovec> pieces, bool moreFollows);
-    Awaitable<void> sendSlice(const ArchiveSlice& slice);
+    /// @param done  bytes of it that were sent before
+    Awaitable<void> sendSlice(const ArchiveSlice& slice, uint64_t done);
+    /// Counts and logs an answer. @param request  null when there was none
+    void account(const Request* request, int status, std::chrono::microseconds time);
     /// Notes what a call on the socket came to, and waits if it must.
     Awaitable<void> proceed(IoStep step);
     /// Tells the client that nothing follows, and reads on for a moment: closing at once with bytes unread would make

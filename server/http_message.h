@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "common/pmtiles.h"
+#include "common/tile_id.h"
 
 namespace terray::server {
 
@@ -23,10 +24,11 @@ struct Request {
     std::optional<std::string> ifMatch, ifNoneMatch, ifRange, range;
 };
 
-/// Bytes of an archive, sent from the file without passing through the program. Holds the archive open.
+/// Bytes of an archive, which it holds open.
 struct ArchiveSlice {
     std::shared_ptr<const ServedArchive> archive;
     ByteRange range;
+    std::optional<TileId> tile = {};  ///< they are all of this tile
 };
 
 using Body = std::variant<std::monostate, std::string, ArchiveSlice>;

@@ -46,6 +46,17 @@ void writeSeconds(Text& out, const Metrics& metrics) {
     out.sample("_count", total);
 }
 
+void writeTiles(Text& out, const Metrics& metrics) {
+    out.single("tile_hits_total", "counter", "Tiles asked for that were kept.", number(metrics.tileHits));
+    out.single("tile_reads_total", "counter", "Tiles read because a client asked.", number(metrics.tileReads));
+    out.single("tile_joins_total", "counter", "Requests that joined a read under way.", number(metrics.tileJoins));
+    out.single("tile_evictions_total", "counter", "Tiles dropped to stay within --cache.",
+               number(metrics.tileEvictions));
+    out.single("ahead_reads_total", "counter", "Tiles read before anyone asked.", number(metrics.aheadReads));
+    out.single("ahead_used_total", "counter", "Of them, those asked for while kept.", number(metrics.aheadUsed));
+    out.single("cache_bytes", "gauge", "Bytes of tiles kept.", number(metrics.cacheBytes));
+}
+
 }  // namespace
 
 void Metrics::count(int status, uint64_t bytes, std::chrono::microseconds time, bool whole) {
@@ -81,6 +92,7 @@ std::string prometheusText(const Metrics& metrics, size_t datasets) {
                number(metrics.connectionsEvicted));
     out.single("connections_expired_total", "counter",
                "Connections closed because they were idle or slow for too long.", number(metrics.connectionsExpired));
+    writeTiles(out, metrics);
     out.single("reloads_total", "counter", "Reloads of the datasets.", number(metrics.reloads));
     out.single("log_lines_dropped_total", "counter", "Lines of the access log that its reader was too slow for.",
                number(metrics.logLinesDropped));

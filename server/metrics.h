@@ -24,6 +24,14 @@ struct Metrics {
     std::atomic<uint64_t> connectionsRefused = 0;  ///< with 503, because there were too many
     std::atomic<uint64_t> connectionsEvicted = 0;  ///< idle ones closed to make room for new ones
     std::atomic<uint64_t> connectionsExpired = 0;  ///< idle, or too slow, for too long
+    std::atomic<uint64_t> tileHits = 0;            ///< tiles that were kept
+    std::atomic<uint64_t> tileReads = 0;           ///< tiles read because a client asked
+    std::atomic<uint64_t> tileJoins = 0;           ///< requests that joined a read under way
+    std::atomic<uint64_t> tileEvictions = 0;       ///< tiles dropped to stay within the budget
+    std::atomic<uint64_t> aheadReads = 0;          ///< tiles read before anyone asked
+    std::atomic<uint64_t> aheadUsed = 0;           ///< of them, those asked for while kept
+    std::atomic<uint64_t> cacheBytes = 0;          ///< kept now
+
     std::atomic<uint64_t> reloads = 0;
     std::atomic<uint64_t> logLinesDropped = 0;
 

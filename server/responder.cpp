@@ -61,7 +61,7 @@ Found findTile(const ServedDataset& dataset, const Layer& layer, const std::vect
     if (!range) return refusal(500, "the archive cannot be read; the server's operator should verify the dataset");
     if (!*range) return Resource{.tag = dataset.version};
     return Resource{
-        .type = layer.tileType, .body = ArchiveSlice{archive, **range}, .tag = dataset.version, .hasRanges = true};
+        .type = layer.tileType, .body = ArchiveSlice{archive, **range, id}, .tag = dataset.version, .hasRanges = true};
 }
 
 Found findInLayer(const ServedDataset& dataset, const Layer& layer, const std::vector<std::string>& segments) {
@@ -70,7 +70,7 @@ Found findInLayer(const ServedDataset& dataset, const Layer& layer, const std::v
     if (segments.size() == 5) return findTile(dataset, layer, segments);
     if (segments.size() == 2 && segments[1] == layer.file)
         return Resource{.type = "application/vnd.pmtiles",
-                        .body = ArchiveSlice{archive, {0, archive->size()}},
+                        .body = ArchiveSlice{.archive = archive, .range = {0, archive->size()}},
                         .tag = dataset.version,
                         .hasRanges = true};
     return notFound("tiles lie at /" + dataset.name + "/" + layer.name + "/{z}/{x}/{y}");
@@ -157,6 +157,7 @@ Response answerWith(const Request& request, Resource resource) {
                                                std::to_string(size));
         auto& slice = std::get<ArchiveSlice>(response.body);
         slice.range = {slice.range.offset + part->offset, part->length};
+        slice.tile.reset();
     }
     return response;
 }

@@ -28,6 +28,7 @@ struct Settings {
     std::string listen = "127.0.0.1:8080";
     int64_t threads = std::max<int64_t>(std::thread::hardware_concurrency(), 1);
     int64_t maxConnections = 16384;
+    uint64_t cacheBytes = uint64_t{256} << 20;
     double idleTimeout = 60;
     std::string log = "text";
 };
@@ -108,6 +109,7 @@ bool parse(const std::vector<std::string>& arguments, Settings& settings) {
     line.option("--listen", settings.listen, "HOST:PORT",
                 "default 127.0.0.1:8080; [::]:8080 for IPv6; port 0: a free one");
     line.option("--threads", settings.threads, "N", "threads that serve; default: one for each core");
+    line.bytes("--cache", settings.cacheBytes, "tiles kept in memory, default 256M; 0: none");
     line.option("--max-connections", settings.maxConnections, "N",
                 "default 16384; one more takes the place of the longest idle, else it is refused");
     line.option("--idle-timeout", settings.idleTimeout, "S",
@@ -135,6 +137,7 @@ ExitCode runServer(const std::vector<std::string>& arguments) {
                    .threads = static_cast<int>(settings.threads),
                    .maxConnections = roomForConnections(static_cast<size_t>(settings.maxConnections)),
                    .idleTimeout = idleTimeout,
+                   .cacheBytes = settings.cacheBytes,
                    .log = parseLogFormat(settings.log)},
                   catalogue);
     server.start();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <utility>
 
@@ -117,10 +118,19 @@ std::string contentTag(std::string_view text) {
     return hexadecimal(fnv1a(text));
 }
 
+ServedArchive::ServedArchive(PmtilesReader reader, int descriptor, uint64_t version)
+    : reader_(std::move(reader)), descriptor_(descriptor), version_(version) {
+    static std::atomic<uint64_t> opened = 0;
+    serial_ = ++opened;
+}
+
 Result<std::shared_ptr<const ServedArchive>> ServedArchive::open(const std::filesystem::path& path) {
     auto file = openFileSource(path);
-    if (!file) return file.failure();
-    auto reader = PmtilesReader::open(*std::move(file));
+    return file ? open(*std::move(file)) : file.failure();
+}
+
+Result<std::shared_ptr<const ServedArchive>> ServedArchive::open(std::unique_ptr<ByteSource> source) {
+    auto reader = PmtilesReader::open(std::move(source));
     if (!reader) return Failure{reader.failure().message + "; " + kRebuild};
     const auto descriptor = reader->source().descriptor();
     TERRAY_CHECK(descriptor.has_value());

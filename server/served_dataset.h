@@ -15,6 +15,8 @@ namespace terray::server {
 class ServedArchive {
   public:
     [[nodiscard]] static Result<std::shared_ptr<const ServedArchive>> open(const std::filesystem::path& path);
+    /// The same from a source that has a descriptor().
+    [[nodiscard]] static Result<std::shared_ptr<const ServedArchive>> open(std::unique_ptr<ByteSource> source);
 
     [[nodiscard]] const PmtilesReader& reader() const { return reader_; }
     [[nodiscard]] uint64_t size() const { return reader_.source().size(); }
@@ -22,15 +24,17 @@ class ServedArchive {
     [[nodiscard]] int descriptor() const { return descriptor_; }
     /// Differs between archives that differ: hash of size, time of modification, header, directories and metadata.
     [[nodiscard]] uint64_t version() const { return version_; }
+    /// Differs between any two that this process ever opened.
+    [[nodiscard]] uint64_t serial() const { return serial_; }
     [[nodiscard]] uint32_t finestLevel() const { return reader_.header().maxZoom; }
 
   private:
-    ServedArchive(PmtilesReader reader, int descriptor, uint64_t version)
-        : reader_(std::move(reader)), descriptor_(descriptor), version_(version) {}
+    ServedArchive(PmtilesReader reader, int descriptor, uint64_t version);
 
     PmtilesReader reader_;
     int descriptor_;
     uint64_t version_;
+    uint64_t serial_;
 };
 
 /// A dataset as it was when it was opened. Never changes: a reload makes another.

@@ -1,6 +1,7 @@
 #include "server/server.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "server/listener.h"
@@ -12,12 +13,14 @@ struct Server::State {
     ServerOptions options;
     Shared shared;
     AccessLog log;
+    std::optional<TileStore> tiles;
     std::vector<std::unique_ptr<Worker>> workers;
     std::vector<std::unique_ptr<Listener>> listeners;  ///< on the first worker's thread
 
     explicit State(ServerOptions given)
         : options(std::move(given)), log(options.log, options.logDescriptor, shared.metrics.logLinesDropped) {
         shared.log = &log;
+        if (options.cacheBytes > 0) shared.tiles = &tiles.emplace(TileStoreOptions{options.cacheBytes}, shared.metrics);
     }
 
     /// The worker with the fewest connections.

@@ -19,6 +19,7 @@ struct ServerOptions {
     std::chrono::milliseconds idleTimeout{60000};  ///< without a request, or with an answer that does not move
     std::chrono::milliseconds headTimeout{10000};  ///< for a request to come in
     HeadLimits head;
+    uint64_t cacheBytes = uint64_t{256} << 20;  ///< of tiles kept in memory; 0: none, they go straight from the file
     LogFormat log = LogFormat::off;
     int logDescriptor = 1;
 };

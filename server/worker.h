@@ -24,6 +24,7 @@
 #include "server/catalogue.h"
 #include "server/metrics.h"
 #include "server/request_reader.h"
+#include "server/tile_store.h"
 
 namespace terray::server {
 
@@ -47,6 +48,7 @@ struct WorkerLimits {
 struct Shared {
     Metrics metrics;
     AccessLog* log = nullptr;
+    TileStore* tiles = nullptr;  ///< null: tiles go straight from the file
 };
 
 class Connection;

@@ -101,6 +101,45 @@ TEST_F(Conformance, AnswersBadRequestsAndEndsTheConnection) {
     }
 }
 
+TEST(ConformanceOfTiles, IsTheSameWithAndWithoutACache) {
+    constexpr uint64_t kBudgets[] = {0, 1, 4000, uint64_t{1} << 20};  // 1: nothing fits, 4000: a few do
+    for (const uint64_t budget : kBudgets) {
+        RunningServer running({.threads = 2, .cacheBytes = budget});
+        RawClient client = running.client();
+        for (int round = 0; round < 3; ++round)
+            for (uint64_t hilbert = 0; hilbert < hilbertId({kSmallLevel + 1, 0, 0}); ++hilbert) {
+                const TileId id = tileFromHilbert(hilbert).value();
+                const RawAnswer tile = client.ask("GET", "/small/heights/" + toString(id));
+                if (id == kEmptyTile) {
+                    EXPECT_EQ(204, tile.status);
+                } else {
+                    EXPECT_EQ(smallTile("heights", id), tile.body) << id << " with " << budget;
+                }
+            }
+    }
+}
+
+TEST(ConformanceOfTiles, SendsThemWholeWhenTheClientHasToBeWaitedFor) {
+    // 100 answers of half a megabyte without reading any: the kernel soon holds all it may.
+    const std::string large(500'000, 'x');
+    RunningServer running({}, [&](const auto& directory) { writeSmallDataset(directory, true, 1, large); });
+    RawClient client = running.client();
+    for (int i = 0; i < 100; ++i) client.request("GET", "/small/heights/2/" + std::to_string(i % 4) + "/1");
+    for (uint32_t i = 0; i < 100; ++i) {
+        const auto answer = client.answer();
+        ASSERT_TRUE(answer) << i;
+        ASSERT_EQ(smallTile("heights", {2, i % 4, 1}) + large, answer->body) << i;
+    }
+}
+
+TEST(ConformanceOfTiles, AnswersATileThatCannotBeReadWith500) {
+    RunningServer running;
+    std::filesystem::resize_file(running.directory() / "heights.pmtiles", 4000);  // as a failing disk: it was opened
+    RawClient client = running.client();
+    EXPECT_EQ(500, client.ask("GET", "/small/heights/2/2/2").status);
+    EXPECT_EQ(200, client.ask("GET", "/health").status) << "the connection and the server go on";
+}
+
 TEST(ConformanceOfLargeArchives, GivesPartsBeyondFourGigabytes) {
     constexpr uint64_t kSize = 6'000'000'000, kPlace = 5'500'000'000;
     const std::string text = "far out";

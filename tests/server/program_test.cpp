@@ -24,7 +24,8 @@ ProgramResult runOnce(const std::vector<std::string>& arguments) {
 TEST(ServerProgram, TellsItsOptions) {
     const ProgramResult help = runOnce({"--help"});
     EXPECT_EQ(0, help.exitCode);
-    for (const char* option : {"NAME=DIR", "--listen", "--threads", "--max-connections", "--idle-timeout", "--log"})
+    for (const char* option :
+         {"NAME=DIR", "--listen", "--threads", "--max-connections", "--idle-timeout", "--log", "--cache"})
         EXPECT_NE(std::string::npos, help.out.find(option)) << option;
     EXPECT_EQ(0, runOnce({"--version"}).exitCode);
 }

@@ -1,5 +1,7 @@
 #include "tests/server/small_dataset.h"
 
+#include <functional>
+
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -24,13 +26,13 @@ DatasetMetadata smallMetadata(bool withImagery) {
 }
 
 void writeArchive(const std::filesystem::path& directory, const std::string& layer, uint32_t finestLevel,
-                  const std::string& metadata, int edition) {
+                  const std::string& metadata, const std::function<std::string(const TileId&)>& tileOf) {
     PmtilesWriter writer(directory / (layer + ".pmtiles"));
     const uint64_t tiles = hilbertId({finestLevel + 1, 0, 0});  // all of the levels above come before it
     for (uint64_t hilbert = 0; hilbert < tiles; ++hilbert) {
         const TileId id = tileFromHilbert(hilbert).value();
         if (kEmptyTile.covers(id)) continue;
-        const std::string tile = smallTile(layer, id, edition);
+        const std::string tile = tileOf(id);
         writer.add(id, std::as_bytes(std::span(tile)));
     }
     writer.finish(metadata, {.maxZoom = static_cast<uint8_t>(finestLevel)});
@@ -44,11 +46,15 @@ std::string smallTile(const std::string& layer, const TileId& id, int edition) {
     return text;
 }
 
-void writeSmallDataset(const std::filesystem::path& directory, bool withImagery, int edition) {
+void writeSmallDataset(const std::filesystem::path& directory, bool withImagery, int edition,
+                       const std::string& suffix) {
     std::filesystem::create_directories(directory);
     const std::string metadata = toJson(smallMetadata(withImagery)).dump();
-    if (withImagery) writeArchive(directory, "imagery", kSmallLevel + 1, metadata, edition);
-    writeArchive(directory, "heights", kSmallLevel, metadata, edition);
+    const auto tilesOf = [&](const std::string& layer) {
+        return [&suffix, layer, edition](const TileId& id) { return smallTile(layer, id, edition) + suffix; };
+    };
+    if (withImagery) writeArchive(directory, "imagery", kSmallLevel + 1, metadata, tilesOf("imagery"));
+    writeArchive(directory, "heights", kSmallLevel, metadata, tilesOf("heights"));
 }
 
 void growHeights(const std::filesystem::path& directory, uint64_t size, uint64_t offset, const std::string& text) {

@@ -19,7 +19,9 @@ inline constexpr TileId kEmptyTile{2, 3, 3};
 
 /// Writes the dataset into a directory, which is made.
 /// @param edition  changes every tile's bytes, and so the dataset's version
-void writeSmallDataset(const std::filesystem::path& directory, bool withImagery = true, int edition = 1);
+/// @param suffix   stands at the end of each tile's bytes
+void writeSmallDataset(const std::filesystem::path& directory, bool withImagery = true, int edition = 1,
+                       const std::string& suffix = "");
 
 /// Makes its heights archive `size` bytes long, with zeros that take no room on the disk, and writes `text` at
 /// `offset`.
