@@ -208,6 +208,7 @@ bool FaultServer::answer(int connection, const std::string& head) {
     if (!sendAll(connection, answer.head)) return false;
     const bool half = fault == Fault::reset || fault == Fault::truncate || fault == Fault::stall;
     const std::string_view body = answer.body;
+    if (fault == Fault::trickle) return trickle(connection, body);
     if (!sendAll(connection, half ? body.substr(0, body.size() / 2) : body)) return false;
     if (fault == Fault::stall) stallUntilOver(fault);
     if (fault == Fault::reset || fault == Fault::stall) resetOnClose(connection);
@@ -216,6 +217,16 @@ bool FaultServer::answer(int connection, const std::string& head) {
 
 void FaultServer::stallUntilOver(Fault fault) const {
     while (!stopping_ && fault_ == fault) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+/// @return whether all of it has gone
+bool FaultServer::trickle(int connection, std::string_view body) const {
+    while (!body.empty() && !stopping_ && fault_ == Fault::trickle) {
+        if (!sendAll(connection, body.substr(0, 1))) return false;
+        body.remove_prefix(1);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return sendAll(connection, body);
 }
 
 }  // namespace terray

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -21,6 +22,7 @@ enum class Fault {
     truncate,  ///< the connection ends in order in the middle of the body
     corrupt,   ///< one byte of the body is another
     stall,     ///< nothing comes after half of the body, until the fault is over
+    trickle,   ///< the body comes byte by byte, 50 a second, until the fault is over
     status500,
     status503,    ///< with Retry-After: 1
     wrongLength,  ///< Content-Length and body are one byte shorter than Content-Range says
@@ -62,6 +64,7 @@ class FaultServer {
     [[nodiscard]] bool answer(int connection, const std::string& head);
     [[nodiscard]] Fault nextFault();
     void stallUntilOver(Fault fault) const;
+    [[nodiscard]] bool trickle(int connection, std::string_view body) const;
 
     const std::filesystem::path root_;
     uint16_t port_ = 0;
