@@ -26,9 +26,12 @@ PROJECT = {
     "client/stream": ["common"],
     "client/render": ["common", "shaders/interop.h"],
     "client/overlay": ["common", "client/stream"],
+    "client/navigation": ["common", "client/stream"],
     "client/output": ["common"],
     "client/engine": ["common", "client/stream", "client/overlay", "client/render"],
-    "client/view": ["common", "client/stream", "client/render", "client/output", "client/engine"],
+    "client/view": [
+        "common", "client/stream", "client/navigation", "client/render", "client/output", "client/engine",
+    ],
     "client/bench": [
         "common", "common/reference", "shaders/math", "client/stream", "client/render", "client/output",
         "client/engine",
