@@ -149,7 +149,8 @@ struct ShadingParameters {
 // What methods other than the pyramid's search by (MethodOptions); each reads its own.
 struct MethodParameters {
     vec4 linear;  // x: least, y: most samples of a ray's way through a box; z: halvings
-    vec4 hull;    // x: steps, y: more steps, twice as long; z: stride, in tiles, < 0: exponential; w: secant steps
+    vec4 hull;    // x: steps, y: more and longer steps; z: stride, in tiles, < 0: exponential; w: secant steps
+    vec4 hullMore;  // x: length of the longer steps, in strides
     vec4 cones;   // x: steps, y: reach in blocks, z: halvings
 };
 
@@ -173,7 +174,7 @@ struct EditedTileParameters {
 static_assert(sizeof(EditParameters) == 2 * 32);
 static_assert(sizeof(EditedTileParameters) == 3 * 32);
 static_assert(sizeof(ShadingParameters) == 16);
-static_assert(sizeof(MethodParameters) == 3 * 16);
+static_assert(sizeof(MethodParameters) == 4 * 16);
 static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);

@@ -36,7 +36,7 @@ vec3 filteredPhoto(vec3 place, vec2 alongX, vec2 alongY) { return textureGrad(ph
 #endif
 
 // hit: tile frame, and view depth in metres. slope: gradient of the surface, codes per texel. position: on the picture, -1 .. 1.
-vec3 groundColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) {
+vec3 photoColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) {
     if (node.source.y == TERRAY_NO_SLOT) return frame.ground.rgb;
     Footprint pixel = footprintAt(node, hit, slope, position, kLongestFootprint / node.photo.z);
     vec2 uv = (node.photo.xy + node.photo.z * hit.xy + kPhotoGutter) / kPhotoSide;
@@ -44,7 +44,7 @@ vec3 groundColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) {
     return filteredPhoto(vec3(uv, float(node.source.y)), pixel.alongX * perTexel, pixel.alongY * perTexel);
 }
 #else
-vec3 groundColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) { return frame.ground.rgb; }
+vec3 photoColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) { return frame.ground.rgb; }
 #endif
 
 #endif

@@ -12,6 +12,10 @@
 #include "shading.glsl"
 #else
 #include "photo.glsl"
+
+vec3 groundColour(NodeParameters node, vec4 hit, vec2 slope, vec2 position) {
+    return photoColour(node, hit, slope, position);
+}
 #endif
 
 layout(binding = TERRAY_UNIT_HIT) uniform sampler2D hits;

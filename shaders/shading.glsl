@@ -26,6 +26,8 @@
 #include "shading/residency.glsl"
 #elif TERRAY_SHADE_ERROR
 #include "shading/error.glsl"
+#elif TERRAY_SHADE_SOBEL
+#include "shading/sobel.glsl"
 #else
 #include "shading/steps.glsl"
 #endif

@@ -63,7 +63,9 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
         result.lacking += report.wanted;
         result.gpuBytes =
             report.gpuTiles.heights + report.gpuTiles.maxima + report.gpuTiles.imagery + report.gpuTiles.method;
+        result.pyramidBytes = report.gpuTiles.maxima;
         result.methodBytes = report.gpuTiles.method;
+        result.bytesPerTriangle = report.bytesPerTriangle;
         const auto errors = pixelErrors(truth_, engine.view(), pixels, drawnPixels(engine, pixels));
         totals.add(errors);
         if (take) take(setting.name, frame, errors);
@@ -90,13 +92,21 @@ ErrorResult ErrorMeasurement::measure(const ErrorSetting& setting, const TakeErr
 
 /// The first round loads tiles and compiles programs, and is not counted.
 void ErrorMeasurement::time(Engine& engine, ErrorResult& result) const {
+    double triangles = 0, milliseconds = 0;
     for (int round = 0; round <= protocol_.repeats; ++round) {
         std::vector<double> frames;
-        for (int frame = 0; frame < protocol_.frames; ++frame)
-            frames.push_back(drawWhole(engine, cameraOf(flight_, protocol_, frame)).frameMs);
+        for (int frame = 0; frame < protocol_.frames; ++frame) {
+            const FrameReport report = drawWhole(engine, cameraOf(flight_, protocol_, frame));
+            frames.push_back(report.frameMs);
+            if (round == 0) continue;
+            triangles += static_cast<double>(report.triangles);
+            milliseconds += report.frameMs;
+        }
         std::sort(frames.begin(), frames.end());
         if (round > 0) result.frameMs.push_back(percentile<double>(frames, 50));
     }
+    result.triangles = triangles / (protocol_.repeats * protocol_.frames);
+    result.trianglesPerSecond = 1000 * triangles / milliseconds;
     std::sort(result.frameMs.begin(), result.frameMs.end());
 }
 

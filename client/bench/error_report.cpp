@@ -69,7 +69,11 @@ std::vector<Column> columnsOf(const ErrorResult& result) {
     columns.push_back({"nodes", std::to_string(result.nodes)});
     columns.push_back({"lacking", std::to_string(result.lacking)});
     columns.push_back({"gpu_bytes", std::to_string(result.gpuBytes)});
+    columns.push_back({"pyramid_bytes", std::to_string(result.pyramidBytes)});
     columns.push_back({"method_bytes", std::to_string(result.methodBytes)});
+    columns.push_back({"triangles", text(result.triangles)});
+    columns.push_back({"triangles_per_s", text(result.trianglesPerSecond)});
+    columns.push_back({"bytes_per_triangle", text(result.bytesPerTriangle)});
     columns.push_back({"pyramid_ms", text(result.pyramidMs)});
     columns.push_back({"prepare_ms", text(result.prepareMs)});
     return columns;
@@ -174,7 +178,11 @@ Json toJson(const ErrorResult& result) {
                                  {"nodes", Json::Object{{"sum", result.nodes}}},
                                  {"lacking", Json::Object{{"sum", result.lacking}}},
                                  {"gpu_bytes", Json::Object{{"last", result.gpuBytes}}},
+                                 {"pyramid_bytes", Json::Object{{"last", result.pyramidBytes}}},
                                  {"method_bytes", Json::Object{{"last", result.methodBytes}}},
+                                 {"triangles", Json::Object{{"mean", result.triangles}}},
+                                 {"triangles_per_s", Json::Object{{"mean", result.trianglesPerSecond}}},
+                                 {"bytes_per_triangle", Json::Object{{"last", result.bytesPerTriangle}}},
                                  {"pyramid_ms", Json::Object{{"mean", result.pyramidMs}}},
                                  {"prepare_ms", Json::Object{{"mean", result.prepareMs}}}}},
         {"pixels", result.pixels}};

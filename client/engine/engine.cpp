@@ -229,7 +229,10 @@ void Engine::State::fillReport() {
     report.nodes = selection.nodes.size();
     report.casters = selection.casters.size();
     report.bilinearNodes = renderer.bilinearNodes();
-    if (const MethodTiles* tiles = resident.gpu().methodTiles()) report.triangles = tiles->takeTriangles();
+    if (const MethodTiles* tiles = resident.gpu().methodTiles()) {
+        report.triangles = tiles->takeTriangles();
+        report.bytesPerTriangle = tiles->bytesPerTriangle();
+    }
     for (const DrawNode& node : selection.nodes)
         if (!node.heightsExact || !node.imageryExact) ++report.standIns;
     report.wanted = selection.wanted.size();

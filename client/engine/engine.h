@@ -51,6 +51,7 @@ struct FrameReport {
     size_t nodes = 0;
     size_t bilinearNodes = 0;
     uint64_t triangles = 0;  ///< drawn by methods that rasterise geometry, sides of boxes not counted
+    double bytesPerTriangle = 0;  ///< that the method keeps of resident tiles; 0: it keeps no mesh of each tile's own
     size_t casters = 0;   ///< nodes outside the picture that may cast shadows into it
     size_t standIns = 0;  ///< nodes drawn from an ancestor of what was wanted
     size_t wanted = 0;    ///< tiles that the frame still lacked, failed ones among them

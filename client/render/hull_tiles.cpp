@@ -63,4 +63,9 @@ uint64_t HullTiles::bytes() const {
     return sizeof(float) * (slots_ * vertices + static_cast<uint64_t>(side_) * static_cast<uint64_t>(side_));
 }
 
+double HullTiles::bytesPerTriangle() const {
+    const auto triangles = 2 * slots_ * static_cast<uint64_t>(side_) * static_cast<uint64_t>(side_);
+    return static_cast<double>(bytes()) / static_cast<double>(triangles);
+}
+
 }  // namespace terray

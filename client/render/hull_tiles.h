@@ -24,6 +24,7 @@ class HullTiles final : public MethodTiles {
     [[nodiscard]] float slack(uint32_t) const override { return 0; }
     [[nodiscard]] uint64_t takeTriangles() const override { return std::exchange(triangles_, 0); }
     [[nodiscard]] uint64_t bytes() const override;
+    [[nodiscard]] double bytesPerTriangle() const override;
 
     /// R32F, (side + 1)^2 texels a slot: heights of vertices in codes; below every code where no ground is near.
     [[nodiscard]] GLuint texture() const { return hulls_.name(); }

@@ -77,6 +77,12 @@ void MeshTiles::draw(const interop::NodeParameters& node) const {
     glEnable(GL_CULL_FACE);
 }
 
+double MeshTiles::bytesPerTriangle() const {
+    uint64_t all = 0;
+    for (const Mesh& mesh : meshes_) all += mesh.starts.back() / 3;
+    return all == 0 ? 0 : static_cast<double>(bytes_) / static_cast<double>(all);
+}
+
 float MeshTiles::slack(uint32_t slot) const {
     return meshes_.at(slot).tolerance;
 }

@@ -19,6 +19,7 @@ class MeshTiles final : public MethodTiles {
     [[nodiscard]] float slack(uint32_t slot) const override;
     [[nodiscard]] uint64_t takeTriangles() const override { return std::exchange(drawn_, 0); }
     [[nodiscard]] uint64_t bytes() const override { return bytes_; }
+    [[nodiscard]] double bytesPerTriangle() const override;
 
     /// Of a slot's tile.
     [[nodiscard]] uint64_t triangles(uint32_t slot) const { return meshes_.at(slot).starts.back() / 3; }

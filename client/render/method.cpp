@@ -90,6 +90,7 @@ interop::MethodParameters methodParameters(const MethodOptions& options) {
     const double stride = options.exponential != 0 ? -1 : options.stride / options.quads;
     return {.linear = glm::vec4(glm::dvec4(options.least, options.most, options.halvings, 0)),
             .hull = glm::vec4(glm::dvec4(options.steps, options.more, stride, options.secants)),
+            .hullMore = glm::vec4(glm::dvec4(options.coarser, 0, 0, 0)),
             .cones = glm::vec4(glm::dvec4(options.coneSteps, options.reach, options.coneHalvings, 0))};
 }
 

@@ -61,7 +61,8 @@ struct MethodOptions {
     // hull
     double quads = 32;       ///< along a tile's side
     double steps = 5;        ///< from the mesh on
-    double more = 10;        ///< of rays that met nothing, each twice as long
+    double more = 10;        ///< of rays that met nothing
+    double coarser = 2;      ///< length of each of these, in strides
     double stride = 0.8;     ///< length of a step, in quads
     double exponential = 0;  ///< 1: steps that double up to the box's exit instead, and no more
     double secants = 2;      ///< at last
@@ -86,13 +87,14 @@ struct MethodKey {
     double highest;
     enum class Kind : uint8_t { any, whole, powerOfTwo } kind;
 };
-inline constexpr std::array<MethodKey, 14> kMethodKeys = {{
+inline constexpr std::array<MethodKey, 15> kMethodKeys = {{
     {Method::linear, "least", &MethodOptions::least, 1, 65536, MethodKey::Kind::whole},
     {Method::linear, "most", &MethodOptions::most, 1, 65536, MethodKey::Kind::whole},
     {Method::linear, "halvings", &MethodOptions::halvings, 0, 32, MethodKey::Kind::whole},
     {Method::hull, "quads", &MethodOptions::quads, 16, 256, MethodKey::Kind::powerOfTwo},
     {Method::hull, "steps", &MethodOptions::steps, 1, 65536, MethodKey::Kind::whole},
     {Method::hull, "more", &MethodOptions::more, 0, 65536, MethodKey::Kind::whole},
+    {Method::hull, "coarser", &MethodOptions::coarser, 0.01, 1000, MethodKey::Kind::any},
     {Method::hull, "stride", &MethodOptions::stride, 1e-4, 1e4, MethodKey::Kind::any},
     {Method::hull, "exponential", &MethodOptions::exponential, 0, 1, MethodKey::Kind::whole},
     {Method::hull, "secants", &MethodOptions::secants, 0, 32, MethodKey::Kind::whole},

@@ -42,6 +42,8 @@ class MethodTiles {
     [[nodiscard]] virtual uint64_t takeTriangles() const = 0;
     /// Allocated.
     [[nodiscard]] virtual uint64_t bytes() const = 0;
+    /// Over all tiles that it has; 0: for methods without geometry, or before the first tile.
+    [[nodiscard]] virtual double bytesPerTriangle() const = 0;
 
   protected:
     MethodTiles() = default;

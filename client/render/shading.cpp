@@ -39,6 +39,8 @@ ShadingNeeds needsOf(Shading shading) {
             return {.sky = false, .steps = true};
         case Shading::shadowSteps:
             return {.sky = false, .shadowSteps = true};
+        case Shading::sobel:
+            return {.photo = true, .photoTiles = true};
     }
     return {};
 }

@@ -25,6 +25,7 @@ enum class Shading : uint8_t {
     error,        ///< projected error of the height tile against the tolerance, lit
     steps,        ///< of each pixel's ray, sky included
     shadowSteps,  ///< of each pixel's shadow rays
+    sobel,        ///< the photo in paper 003's light: normals by a Sobel filter, ambient, diffuse and specular
 };
 
 /// All of them, with their names on command lines and their defines in shaders ("": none of its own).
@@ -33,7 +34,7 @@ struct ShadingMode {
     std::string_view name;
     std::string_view define;
 };
-inline constexpr std::array<ShadingMode, 14> kShadingModes = {{
+inline constexpr std::array<ShadingMode, 15> kShadingModes = {{
     {Shading::photo, "photo", ""},
     {Shading::light, "light", ""},
     {Shading::height, "height", "TERRAY_SHADE_HEIGHT"},
@@ -48,6 +49,7 @@ inline constexpr std::array<ShadingMode, 14> kShadingModes = {{
     {Shading::error, "error", "TERRAY_SHADE_ERROR"},
     {Shading::steps, "steps", "TERRAY_SHADE_STEPS"},
     {Shading::shadowSteps, "shadow-steps", "TERRAY_SHADE_SHADOW_STEPS"},
+    {Shading::sobel, "sobel", "TERRAY_SHADE_SOBEL"},
 }};
 
 /// What a mode shows beside its own; all else is neither compiled, paged nor run for it.

@@ -28,7 +28,7 @@ March searchBelow(NodeParameters node, vec3 direction, float start) {
     float stride = method.hull.z / length(unit);
     float t = start;
     for (int i = 0; i < first + (exponential ? 0 : second) && t < exit; ++i, ++march.steps) {
-        t = exponential ? mix(start, exit, exponentialShare(i, first)) : t + (i < first ? stride : 2.0 * stride);
+        t = exponential ? mix(start, exit, exponentialShare(i, first)) : t + (i < first ? stride : method.hullMore.x * stride);
         t = min(t, exit);
         float here = clearanceOf(node, direction, t);
         if (here > 0.0) {

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "common/height_tile.h"
+#include "common/srgb.h"
 #include "tests/support/shaded_picture.h"
 
 namespace terray {
@@ -66,6 +68,34 @@ template <class Expected>
 double worstColour(const ShadedPicture& picture, const Expected& expected) {
     return worst(
         picture, [&](int64_t x, int64_t y) { return picture.colour(x, y); }, expected);
+}
+
+/// The Sobel filter of bilinearly filtered codes at a hit, codes per texel. Ground goes on at the hit's height where
+/// there is none.
+glm::dvec2 sobel(const Grid<uint16_t>& codes, const glm::dvec4& hit) {
+    const auto filtered = [&](double x, double y) {
+        const double column = std::floor(x), row = std::floor(y), u = x - column, v = y - row;
+        const auto code = [&](int dx, int dy) {
+            const uint16_t stored = codes.at(static_cast<int>(column) + dx, static_cast<int>(row) + dy);
+            return stored == kNoSurface ? hit.z : stored;
+        };
+        return (code(0, 0) * (1 - u) + code(1, 0) * u) * (1 - v) + (code(0, 1) * (1 - u) + code(1, 1) * u) * v;
+    };
+    const glm::dvec2 centre = glm::dvec2(hit) - 0.5 + glm::dvec2(kHeightApron);
+    glm::dvec2 gradient(0);
+    for (const int along : {-1, 0, 1}) {
+        const double weight = along == 0 ? 2 : 1;
+        gradient.x += weight * (filtered(centre.x + 1, centre.y + along) - filtered(centre.x - 1, centre.y + along));
+        gradient.y += weight * (filtered(centre.x + along, centre.y + 1) - filtered(centre.x + along, centre.y - 1));
+    }
+    return gradient / 8.0;
+}
+
+/// Linear colour of an encoded one.
+glm::dvec3 linear(const Encoded& encoded) {
+    glm::dvec3 out;
+    for (int i = 0; i < 3; ++i) out[i] = linearFromSrgb(static_cast<uint8_t>(encoded[i]));
+    return out;
 }
 
 TEST_F(ShadingTest, LightIsTheGroundWithoutItsPhoto) {
@@ -202,6 +232,32 @@ TEST_F(ShadingTest, ErrorIsThatOfTheHeightTileOnTheScreenAgainstTheTolerance) {
             EXPECT_EQ(over, 0) << "what is selected keeps the tolerance";
         }
     }
+}
+
+TEST_F(ShadingTest, SobelIsPaper003sLightOverNormalsOfASobelFilter) {
+    EngineOptions bare = exaggerated(1.5);
+    bare.selection.useImagery = false;
+    const ShadedPicture picture = draw(Shading::sobel, bare);
+    const glm::dvec3 sun = glm::normalize(RenderOptions().sunDirection);
+    const glm::dvec3 ground = linear(legend(kNeutralGround[0] << 16 | kNeutralGround[1] << 8 | kNeutralGround[2]));
+    std::map<TileId, HeightTile> tiles;
+    EXPECT_LT(worstColour(picture,
+                          [&](int64_t x, int64_t y) {
+                              const TileId id = picture.node(x, y).heightTile;
+                              if (!tiles.contains(id))
+                                  tiles[id] = decodeHeightTile(*dataset_.read(TileLayer::heights, id), id).value();
+                              const double scale = bare.exaggeration * tiles[id].encoding.metresPerCode() /
+                                                   dataset_.metadata().tiling.spacing(id.level);
+                              const glm::dvec2 rise = scale * sobel(tiles[id].codes, glm::dvec4(picture.hit(x, y)));
+                              const glm::dvec3 normal = glm::normalize(glm::dvec3(-rise.x, rise.y, 1));
+                              const glm::dvec3 toEye =
+                                  glm::normalize((camera_.position - picture.place(x, y)) * glm::dvec3(1, 1, 1.5));
+                              const double shine = glm::dot(normal, glm::normalize(sun + toEye));
+                              return encodedFromLinear(0.5 * ground + 0.35 * std::max(glm::dot(sun, normal), 0.0) +
+                                                       0.1 * std::pow(std::max(shine, 0.0), 20));
+                          }),
+              kByte);
+    EXPECT_TRUE(draw(Shading::sobel).engine().targets().features().imagery) << "the photo, where there is one";
 }
 
 TEST_F(ShadingTest, StepsAreColouredFromBlackForNoneToWhiteForFifty) {

@@ -131,7 +131,7 @@ TEST(FeatureSet, ModesLeaveOutWhatTheyDoNotShow) {
     };
     for (const ShadingMode& mode : kShadingModes) {
         const FeatureSet kept = resolving(mode.shading);
-        const bool photo = mode.shading == Shading::photo;
+        const bool photo = mode.shading == Shading::photo || mode.shading == Shading::sobel;
         EXPECT_EQ(kept.imagery, photo) << mode.name;
         EXPECT_EQ(kept.photoProbes, photo) << mode.name;
         EXPECT_EQ(kept.curved, photo || mode.shading == Shading::grid || mode.shading == Shading::contours);
@@ -141,7 +141,7 @@ TEST(FeatureSet, ModesLeaveOutWhatTheyDoNotShow) {
             EXPECT_EQ(other.shading, Shading::photo) << mode.name;
     }
     EXPECT_EQ(resolving(Shading::light).shading, Shading::photo) << "light is the photo's program without a photo";
-    for (const Shading measured : {Shading::depth, Shading::normal, Shading::slope}) {
+    for (const Shading measured : {Shading::depth, Shading::normal, Shading::slope, Shading::sobel}) {
         EXPECT_FALSE(resolving(measured).air || resolving(measured).shadows);
         EXPECT_TRUE(resolving(measured).sky);
     }

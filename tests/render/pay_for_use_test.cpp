@@ -176,7 +176,7 @@ TEST_F(PayForUse, AShadingModeReadsNothingButItsOwn) {
         const auto program = [&](const FeatureSet& features) { return shaders_.require(stages, features.defines()); };
         const Names bare = uniformsOf(program({}));
         for (const ShadingMode& mode : kShadingModes) {
-            // Neither photo nor probes are on for any of them but the photo itself.
+            // Neither photo nor probes are on for any of them but those that show the photo.
             const FeatureSet features = FeatureSet{.imagery = mode.shading != Shading::photo,
                                                    .curved = true,
                                                    .shadows = mode.shading == Shading::shadowSteps,
@@ -186,6 +186,7 @@ TEST_F(PayForUse, AShadingModeReadsNothingButItsOwn) {
             Names buffers = {"FrameBuffer", "NodeBuffer"};
             if (needs.measures) buffers.insert("ShadingBuffer");
             Names expected = bare;
+            if (needs.photo && features.imagery) expected.insert("photos");
             if (needs.steps || needs.shadowSteps) {
                 expected.insert("stepCounts");
                 for (const char* ground : {"heightCodes", "hitNodes", "hits"}) expected.erase(ground);
