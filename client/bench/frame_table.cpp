@@ -64,6 +64,7 @@ void addTiles(std::vector<Column>& columns) {
     add("nodes", [](const auto& f) { return count(f.report.nodes); });
     add("casters", [](const auto& f) { return count(f.report.casters); });
     add("bilinear_nodes", [](const auto& f) { return count(f.report.bilinearNodes); });
+    add("rasterised_nodes", [](const auto& f) { return count(f.report.rasterisedNodes); });
     add("triangles", [](const auto& f) { return count(f.report.triangles); });
     add("stand_ins", [](const auto& f) { return count(f.report.standIns); });
     add("wanted", [](const auto& f) { return count(f.report.wanted); });

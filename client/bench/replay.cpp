@@ -10,6 +10,7 @@
 #include "client/bench/progress_bar.h"
 #include "client/bench/run_directory.h"
 #include "client/engine/dataset_options.h"
+#include "client/engine/draw_costs_file.h"
 #include "client/engine/engine.h"
 #include "client/engine/engine_options.h"
 #include "client/engine/program.h"
@@ -119,6 +120,7 @@ class Replay {
     [[nodiscard]] Json summary() const {
         return Json::Object{{"frames", uint64_t{frames_}},
                             {"launch", launch()},
+                            {"drawCosts", engine_.drawCosts() ? toJson(*engine_.drawCosts()) : Json()},
                             {"earth", engine_.earth().description()},
                             {"shading", description(engine_.shading())},
                             {"wallSeconds", wallSeconds_},

@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "client/engine/draw_costs_file.h"
 #include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
 #include "client/engine/sun_clock.h"
@@ -229,6 +230,7 @@ void Engine::State::fillReport() {
     report.nodes = selection.nodes.size();
     report.casters = selection.casters.size();
     report.bilinearNodes = renderer.bilinearNodes();
+    report.rasterisedNodes = renderer.rasterisedNodes();
     if (const MethodTiles* tiles = resident.gpu().methodTiles()) {
         report.triangles = tiles->takeTriangles();
         report.bytesPerTriangle = tiles->bytesPerTriangle();
@@ -257,6 +259,9 @@ void requireAllTiles(const FrameReport& report, const std::string& consequence) 
 Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width,
                int height)
     : state_(std::make_unique<State>(source, shaders, options, width, height)) {
+    RenderOptions& render = state_->options.render;
+    if (render.method.method == Method::hybrid && !render.drawCosts)
+        render.drawCosts = settledDrawCosts(options.drawCostsFile, shaders);
     setExaggeration(options.exaggeration);
     state_->renderer.setOverlay(options.overlay);
     state_->options.overlay.clear();  // it is on the GPU
@@ -329,6 +334,10 @@ const GpuTiles& Engine::tiles() const {
 
 const ShadingOptions& Engine::shading() const {
     return state_->options.render.shading;
+}
+
+const std::optional<DrawCosts>& Engine::drawCosts() const {
+    return state_->options.render.drawCosts;
 }
 
 const std::optional<TerrainRenderer::Calibration>& Engine::calibration() const {

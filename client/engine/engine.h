@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@ struct EngineOptions {
     FeatureSet
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;
+    std::filesystem::path drawCostsFile;  ///< of Method::hybrid, see draw_costs_file.h; unless render.drawCosts are set
     bool measurePreparation = false;  ///< tiles().preparation(); frames then wait for the GPU at each upload
     double exaggeration = 1;          ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
     /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.
@@ -50,6 +52,7 @@ struct FrameReport {
     std::array<double, kGpuPasses> gpuMs{};
     size_t nodes = 0;
     size_t bilinearNodes = 0;
+    size_t rasterisedNodes = 0;  ///< drawn by geometry of the method
     uint64_t triangles = 0;  ///< drawn by methods that rasterise geometry, sides of boxes not counted
     double bytesPerTriangle = 0;  ///< that the method keeps of resident tiles; 0: it keeps no mesh of each tile's own
     size_t casters = 0;   ///< nodes outside the picture that may cast shadows into it
@@ -114,6 +117,8 @@ class Engine {
     [[nodiscard]] const EarthModel& earth() const;
     /// What the ground shows, with what was settled from the dataset: heights, contour interval, tolerance.
     [[nodiscard]] const ShadingOptions& shading() const;
+    /// What drawing costs here; none unless the method is hybrid.
+    [[nodiscard]] const std::optional<DrawCosts>& drawCosts() const;
     /// How the launch was chosen; none unless Launch::automatic has drawn a frame.
     [[nodiscard]] const std::optional<TerrainRenderer::Calibration>& calibration() const;
 

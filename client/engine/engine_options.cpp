@@ -147,6 +147,10 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--method", method_, "NAME[:KEY=VALUE,...]",
                 "how the visible surface is found: " + namesOf(kMethods, "|") +
                     "; client/README.md has the numbers that each may be given (pyramid)");
+    line.option(
+        "--draw-costs", drawCosts_, "FILE",
+        "what --method hybrid chooses by on this machine: read, or measured and written there when it is missing "
+        "or other graphics have written it (measured at each start)");
     line.option("--shadows", shadows_, "on|off", "cast by the ground, tiles outside the picture included (off)");
     line.option("--sun-diameter", sunDiameter_, "DEGREES",
                 "of the sun's disc, for soft shadows; the sun's is 0.53 (0)");
@@ -197,6 +201,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
         options.render.shadows = ShadowOptions{.sunDiameter = radiansFromDegrees(sunDiameter_).value(),
                                                .rays = static_cast<int>(shadowRays_)};
     }
+    options.drawCostsFile = drawCosts_;
     options.pager.hostBudgetBytes = hostMemory_;
     options.pager.decodeThreads = static_cast<int>(decodeThreads_);
     options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;
@@ -239,6 +244,7 @@ Json EngineCommandLine::toJson() const {
                         {"occlusion", occlusion_},
                         {"surface", surface_},
                         {"method", method_},
+                        {"draw-costs", drawCosts_.empty() ? Json() : Json(drawCosts_)},
                         {"shadows", shadows_},
                         {"sun-diameter", sunDiameter_},
                         {"shadow-rays", shadowRays_},

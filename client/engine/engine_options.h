@@ -60,6 +60,7 @@ class EngineCommandLine {
     std::string earth_ = "auto";
     double refraction_ = EarthOptions().refraction;
     std::string method_ = "pyramid";
+    std::string drawCosts_;
     std::string shadows_ = "off";
     double sunDiameter_ = 0;
     int64_t shadowRays_ = ShadowOptions().rays;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "client/render/feature_set.h"
@@ -19,6 +20,8 @@ struct CastFrame {
     FrameTargets& targets;
     GpuTimer* timer = nullptr;                 ///< may be null
     const MethodTiles* methodTiles = nullptr;  ///< of methods that keep something of each tile
+    /// Of each node, whether the method's geometry is rasterised (1) or rays are cast (0); raster launch.
+    std::span<const uint8_t> rasterised;
 
     void enter(GpuPass pass) const {
         if (timer != nullptr) timer->enter(pass);

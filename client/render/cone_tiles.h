@@ -14,11 +14,7 @@ class ConeTiles final : public MethodTiles {
     ConeTiles(int side, int reach, uint32_t slots, const ShaderLibrary& shaders);
     void build(const PreparedTile& tile) override;
     void bind() const override;
-    void draw(const interop::NodeParameters&) const override {}
-    [[nodiscard]] float slack(uint32_t) const override { return 0; }
-    [[nodiscard]] uint64_t takeTriangles() const override { return 0; }
     [[nodiscard]] uint64_t bytes() const override;
-    [[nodiscard]] double bytesPerTriangle() const override { return 0; }
 
     /// R16F, side^2 texels a slot: widths of cones, texels a code.
     [[nodiscard]] GLuint texture() const { return cones_.name(); }

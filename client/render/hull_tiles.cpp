@@ -46,16 +46,25 @@ void HullTiles::bind() const {
     glBindTextureUnit(TERRAY_UNIT_METHOD, hulls_.name());
 }
 
-void HullTiles::draw(const interop::NodeParameters& node) const {
-    // The quads that the node's cell touches; clip distances cut off what lies beyond it.
+/// Clip distances cut off what lies beyond the cell.
+HullTiles::Quads HullTiles::quadsOf(const interop::NodeParameters& node) const {
     const float quad = static_cast<float>(kTileCore) / static_cast<float>(side_);
     const auto first = [&](float from) { return static_cast<GLint>(std::floor(from / quad)); };
     const auto last = [&](float to) { return static_cast<GLint>(std::ceil(to / quad)); };
     const GLint column = first(node.boxMin.x), row = first(node.boxMin.y);
-    const GLint columns = last(node.boxMax.x) - column, rows = last(node.boxMax.y) - row;
-    glUniform3i(TERRAY_UNIFORM_GEOMETRY, column, row, side_);
-    triangles_ += 2 * static_cast<uint64_t>(columns) * static_cast<uint64_t>(rows);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (columns + 1), rows);
+    return {.column = column, .row = row, .columns = last(node.boxMax.x) - column, .rows = last(node.boxMax.y) - row};
+}
+
+uint64_t HullTiles::triangles(const interop::NodeParameters& node) const {
+    const Quads quads = quadsOf(node);
+    return 2 * static_cast<uint64_t>(quads.columns) * static_cast<uint64_t>(quads.rows);
+}
+
+void HullTiles::draw(const interop::NodeParameters& node) const {
+    const Quads quads = quadsOf(node);
+    glUniform3i(TERRAY_UNIFORM_GEOMETRY, quads.column, quads.row, side_);
+    triangles_ += triangles(node);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (quads.columns + 1), quads.rows);
 }
 
 uint64_t HullTiles::bytes() const {

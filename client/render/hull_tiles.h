@@ -21,7 +21,7 @@ class HullTiles final : public MethodTiles {
     void build(const PreparedTile& tile) override;
     void bind() const override;
     void draw(const interop::NodeParameters& node) const override;
-    [[nodiscard]] float slack(uint32_t) const override { return 0; }
+    [[nodiscard]] uint64_t triangles(const interop::NodeParameters& node) const override;
     [[nodiscard]] uint64_t takeTriangles() const override { return std::exchange(triangles_, 0); }
     [[nodiscard]] uint64_t bytes() const override;
     [[nodiscard]] double bytesPerTriangle() const override;
@@ -30,6 +30,15 @@ class HullTiles final : public MethodTiles {
     [[nodiscard]] GLuint texture() const { return hulls_.name(); }
 
   private:
+    /// Those that a node's cell touches.
+    struct Quads {
+        GLint column = 0;
+        GLint row = 0;
+        GLint columns = 0;
+        GLint rows = 0;
+    };
+    [[nodiscard]] Quads quadsOf(const interop::NodeParameters& node) const;
+
     int side_;
     uint32_t slots_;
     GlTexture hulls_;

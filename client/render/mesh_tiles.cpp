@@ -6,13 +6,22 @@ namespace terray {
 namespace {
 
 /// Level 0 of a layer, as edits have left it.
-Grid<uint16_t> readCodes(const PreparedTile& tile) {
+Grid<uint16_t> readCodes(GLuint heightTexture, uint32_t slot) {
     Grid<uint16_t> codes({kHeightTileSide, kHeightTileSide});
     glPixelStorei(GL_PACK_ALIGNMENT, alignof(uint16_t));
-    glGetTextureSubImage(tile.heightTexture, 0, 0, 0, static_cast<GLint>(tile.slot), kHeightTileSide, kHeightTileSide,
-                         1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, static_cast<GLsizei>(codes.cells().size_bytes()),
+    glGetTextureSubImage(heightTexture, 0, 0, 0, static_cast<GLint>(slot), kHeightTileSide, kHeightTileSide, 1,
+                         GL_RED_INTEGER, GL_UNSIGNED_SHORT, static_cast<GLsizei>(codes.cells().size_bytes()),
                          codes.cells().data());
     return codes;
+}
+
+/// Vertices lie in the middle of cells: a block covers half a cell more to the east and the south.
+bool touches(int block, const interop::NodeParameters& node) {
+    constexpr float kReach = TerrainMesh::kBlockSide + 0.5F;
+    const auto west = static_cast<float>(block % TerrainMesh::kBlocksAcross * TerrainMesh::kBlockSide);
+    const auto north = static_cast<float>(block / TerrainMesh::kBlocksAcross * TerrainMesh::kBlockSide);
+    return west - 0.5F < node.boxMax.x && west + kReach > node.boxMin.x && north - 0.5F < node.boxMax.y &&
+           north + kReach > node.boxMin.y;
 }
 
 }  // namespace
@@ -30,14 +39,23 @@ MeshTolerance MeshTiles::toleranceOf(const PreparedTile& tile) const {
 }
 
 void MeshTiles::build(const PreparedTile& tile) {
-    const MeshTolerance tolerance = toleranceOf(tile);
-    const TerrainMesh made = triangulated(tile.codes != nullptr ? *tile.codes : readCodes(tile), tolerance);
     Mesh& mesh = meshes_.at(tile.slot);
     bytes_ -= mesh.starts.back() * sizeof(uint16_t);
-    mesh = {.indices = makeBuffer(),
-            .starts = made.starts,
-            .tolerance = static_cast<float>(tolerance.codes),
-            .holed = tile.record.hasHoles};
+    mesh = {.tolerance = toleranceOf(tile), .holed = tile.record.hasHoles, .heightTexture = tile.heightTexture};
+    Grid<uint16_t> read;
+    if (tile.codes == nullptr) read = readCodes(tile.heightTexture, tile.slot);
+    const Grid<uint16_t>& codes = tile.codes != nullptr ? *tile.codes : read;
+    if (scene_.method.method == Method::hybrid) {
+        mesh.estimate = estimatedTriangles(codes, mesh.tolerance);
+    } else {
+        make(mesh, codes);
+    }
+}
+
+void MeshTiles::make(Mesh& mesh, const Grid<uint16_t>& codes) const {
+    const TerrainMesh made = triangulated(codes, mesh.tolerance);
+    mesh.indices = makeBuffer();
+    mesh.starts = made.starts;
     bytes_ += mesh.starts.back() * sizeof(uint16_t);
     if (!made.indices.empty())
         glNamedBufferStorage(mesh.indices.name(), static_cast<GLsizeiptr>(made.indices.size() * sizeof(uint16_t)),
@@ -45,22 +63,17 @@ void MeshTiles::build(const PreparedTile& tile) {
 }
 
 void MeshTiles::draw(const interop::NodeParameters& node) const {
-    const Mesh& mesh = meshes_.at(node.source.x);
+    Mesh& mesh = meshes_.at(node.source.x);
+    if (!mesh.indices) make(mesh, readCodes(mesh.heightTexture, node.source.x));
     // The blocks that the node's cell touches; clip distances cut off what lies beyond it.
     std::array<GLsizei, TerrainMesh::kBlocks> counts{};
     std::array<const void*, TerrainMesh::kBlocks> offsets{};
     std::array<GLint, TerrainMesh::kBlocks> bases{};
     GLsizei blocks = 0;
     for (int block = 0; block < TerrainMesh::kBlocks; ++block) {
-        const auto west = static_cast<float>(block % TerrainMesh::kBlocksAcross * TerrainMesh::kBlockSide);
-        const auto north = static_cast<float>(block / TerrainMesh::kBlocksAcross * TerrainMesh::kBlockSide);
-        // Vertices lie in the middle of cells: a block covers half a cell more to the east and the south.
-        constexpr float kReach = TerrainMesh::kBlockSide + 0.5F;
-        const bool touched = west - 0.5F < node.boxMax.x && west + kReach > node.boxMin.x &&
-                             north - 0.5F < node.boxMax.y && north + kReach > node.boxMin.y;
         const auto place = static_cast<size_t>(block);
         const uint32_t first = mesh.starts[place], end = mesh.starts[place + 1];
-        if (!touched || first == end) continue;
+        if (!touches(block, node) || first == end) continue;
         const auto at = static_cast<size_t>(blocks++);
         counts[at] = static_cast<GLsizei>(end - first);
         offsets[at] = reinterpret_cast<const void*>(uintptr_t{first} * sizeof(uint16_t));
@@ -77,6 +90,19 @@ void MeshTiles::draw(const interop::NodeParameters& node) const {
     glEnable(GL_CULL_FACE);
 }
 
+uint64_t MeshTiles::triangles(const interop::NodeParameters& node) const {
+    const Mesh& mesh = meshes_.at(node.source.x);
+    uint64_t indices = 0, blocks = 0;
+    for (int block = 0; block < TerrainMesh::kBlocks; ++block) {
+        if (!touches(block, node)) continue;
+        const auto place = static_cast<size_t>(block);
+        indices += mesh.starts[place + 1] - mesh.starts[place];
+        ++blocks;
+    }
+    if (mesh.indices) return indices / 3;
+    return static_cast<uint64_t>(mesh.estimate * static_cast<double>(blocks) / TerrainMesh::kBlocks);
+}
+
 double MeshTiles::bytesPerTriangle() const {
     uint64_t all = 0;
     for (const Mesh& mesh : meshes_) all += mesh.starts.back() / 3;
@@ -84,7 +110,7 @@ double MeshTiles::bytesPerTriangle() const {
 }
 
 float MeshTiles::slack(uint32_t slot) const {
-    return meshes_.at(slot).tolerance;
+    return static_cast<float>(meshes_.at(slot).tolerance.codes);
 }
 
 }  // namespace terray

@@ -24,28 +24,30 @@ enum class Method : uint8_t {
     /// over.
     hull,
     /// Triangles of the tile, made when it is loaded, rasterised (paper 001's rival). Off by up to its tolerance beside
-    /// the
-    /// tile's own error.
+    /// the tile's own error.
     mesh,
     /// Relaxed cones over blocks of samples, stepped through (Policarpo and Oliveira 2007). Misses what its steps do
     /// not reach.
     cones,
+    /// Node by node mesh or pyramid, whichever DrawCosts tells to be cheaper (paper 001, section 6).
+    hybrid,
 };
 
-/// A method's name on command lines and its define in shaders ("": the pyramid's own program draws it).
+/// A method's name on command lines and its define in shaders ("": the pyramid's own program casts its rays).
 struct MethodEntry {
     Method method;
     std::string_view name;
     std::string_view define;
     bool geometry = false;  ///< rasterises its own (GeometryPass), so only the raster launch draws it
 };
-inline constexpr std::array<MethodEntry, 6> kMethods = {{
+inline constexpr std::array<MethodEntry, 7> kMethods = {{
     {Method::pyramid, "pyramid", ""},
     {Method::march, "march", ""},
     {Method::linear, "linear", "TERRAY_METHOD_LINEAR"},
     {Method::hull, "hull", "TERRAY_METHOD_HULL", true},
     {Method::mesh, "mesh", "TERRAY_METHOD_MESH", true},
     {Method::cones, "cones", "TERRAY_METHOD_CONES"},
+    {Method::hybrid, "hybrid", "", true},
 }};
 [[nodiscard]] constexpr const MethodEntry& entryOf(Method method) {
     return kMethods[static_cast<size_t>(method)];
@@ -66,9 +68,9 @@ struct MethodOptions {
     double stride = 0.8;     ///< length of a step, in quads
     double exponential = 0;  ///< 1: steps that double up to the box's exit instead, and no more
     double secants = 2;      ///< at last
-    // mesh
-    double error =
-        0.5;  ///< greatest distance from the samples, over the greater of the tile's own error and a quarter sample
+    // mesh, hybrid: greatest distance of triangles from the samples, over the greater of the tile's own error and a
+    // quarter sample
+    double error = 0.5;
     // cones
     double blocks = 128;      ///< along a tile's side
     double reach = 16;        ///< blocks, how far ground is looked at for a cone, and the longest step
@@ -87,7 +89,7 @@ struct MethodKey {
     double highest;
     enum class Kind : uint8_t { any, whole, powerOfTwo } kind;
 };
-inline constexpr std::array<MethodKey, 15> kMethodKeys = {{
+inline constexpr std::array<MethodKey, 16> kMethodKeys = {{
     {Method::linear, "least", &MethodOptions::least, 1, 65536, MethodKey::Kind::whole},
     {Method::linear, "most", &MethodOptions::most, 1, 65536, MethodKey::Kind::whole},
     {Method::linear, "halvings", &MethodOptions::halvings, 0, 32, MethodKey::Kind::whole},
@@ -99,6 +101,7 @@ inline constexpr std::array<MethodKey, 15> kMethodKeys = {{
     {Method::hull, "exponential", &MethodOptions::exponential, 0, 1, MethodKey::Kind::whole},
     {Method::hull, "secants", &MethodOptions::secants, 0, 32, MethodKey::Kind::whole},
     {Method::mesh, "error", &MethodOptions::error, 0, 100, MethodKey::Kind::any},
+    {Method::hybrid, "error", &MethodOptions::error, 0, 100, MethodKey::Kind::any},
     {Method::cones, "blocks", &MethodOptions::blocks, 32, 512, MethodKey::Kind::powerOfTwo},
     {Method::cones, "reach", &MethodOptions::reach, 1, 512, MethodKey::Kind::whole},
     {Method::cones, "steps", &MethodOptions::coneSteps, 1, 65536, MethodKey::Kind::whole},

@@ -33,17 +33,21 @@ class MethodTiles {
     /// unit 0 and storage buffer 0.
     virtual void build(const PreparedTile& tile) = 0;
     /// Binds what the method's programs read beside heights.
-    virtual void bind() const = 0;
-    /// Draws the triangles that the method has for a node, by the program in use. Nothing for methods without geometry.
-    virtual void draw(const interop::NodeParameters& node) const = 0;
-    /// How far a slot's geometry may lie from the ground, codes.
-    [[nodiscard]] virtual float slack(uint32_t slot) const = 0;
-    /// Triangles that draw() has drawn since it was asked last.
-    [[nodiscard]] virtual uint64_t takeTriangles() const = 0;
+    virtual void bind() const {}
     /// Allocated.
     [[nodiscard]] virtual uint64_t bytes() const = 0;
-    /// Over all tiles that it has; 0: for methods without geometry, or before the first tile.
-    [[nodiscard]] virtual double bytesPerTriangle() const = 0;
+
+    // Of methods that rasterise geometry; the others have none.
+    /// Draws the triangles of a node by the program in use.
+    virtual void draw(const interop::NodeParameters&) const {}
+    /// How many draw() draws of a node, or about as many.
+    [[nodiscard]] virtual uint64_t triangles(const interop::NodeParameters&) const { return 0; }
+    /// That draw() has drawn since it was asked last.
+    [[nodiscard]] virtual uint64_t takeTriangles() const { return 0; }
+    /// How far a slot's geometry may lie from the ground, codes.
+    [[nodiscard]] virtual float slack(uint32_t) const { return 0; }
+    /// Over all tiles that it has; 0 before the first.
+    [[nodiscard]] virtual double bytesPerTriangle() const { return 0; }
 
   protected:
     MethodTiles() = default;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -68,18 +69,9 @@ Bulge bulgeOver(const EarthCurvature& earth, double side) {
     return {.down = down, .up = (earth.xx + earth.yy) * side * side / 4 + down};
 }
 
-}  // namespace
-
-bool magnified(const DrawNode& node, const Tiling& tiling, const View& view) {
-    const GroundRect ground = tiling.bounds(node.cell);
-    const double x = std::max({ground.west - view.eye.x, view.eye.x - ground.east, 0.0});
-    const double y = std::max({ground.south - view.eye.y, view.eye.y - ground.north, 0.0});
-    const double z = std::max(
-        {view.exaggeration * node.minHeight - view.eye.z, view.eye.z - view.exaggeration * node.maxHeight, 0.0});
-    return tiling.spacing(node.heightTile.level) * view.focalPixels() > std::hypot(x, y, z);
-}
-
-glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
+/// Where a box's corners are seen, in pixels counted like gl_FragCoord, and, of edges that lead behind the eye, where
+/// they come nearest.
+std::vector<glm::dvec2> outlinePixels(const interop::NodeParameters& node, const View& view) {
     const glm::dvec3 scale(node.eye.w, -node.eye.w, node.right.w);  // tile frame to metres east, north, up
     std::array<glm::dvec3, 8> corners;                              // right, up, depth
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -93,13 +85,13 @@ glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
         }
         corners[i] = {glm::dot(fromEye, view.right), glm::dot(fromEye, view.up), glm::dot(fromEye, view.forward)};
     }
-    glm::dvec2 least(kUnbounded), greatest(-kUnbounded);
+    const glm::dvec2 size(view.width, view.height);
+    const glm::dvec2 half(view.tanHalfWidth(), view.tanHalfHeight);
+    std::vector<glm::dvec2> pixels;
     const auto take = [&](const glm::dvec3& point) {
         const glm::dvec2 slope(point.x / point.z, point.y / point.z);
-        least = glm::min(least, slope);
-        greatest = glm::max(greatest, slope);
+        pixels.push_back((slope / half + 1.0) * 0.5 * size);
     };
-    // Corners in front of the eye, and where edges that lead behind it come nearest.
     for (size_t i = 0; i < corners.size(); ++i) {
         if (corners[i].z >= kNearest) take(corners[i]);
         for (const size_t axis : {1, 2, 4}) {
@@ -108,11 +100,74 @@ glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
             if (a.z < kNearest && b.z > kNearest) take(glm::mix(a, b, (kNearest - a.z) / (b.z - a.z)));
         }
     }
-    const glm::dvec2 size(view.width, view.height);
-    const glm::dvec2 half(view.tanHalfWidth(), view.tanHalfHeight);
-    const auto pixels = [&](const glm::dvec2& slope) { return (slope / half + 1.0) * 0.5 * size; };
-    const glm::dvec2 low = pixels(least) - 1.0, high = pixels(greatest) + 1.0;
-    return glm::clamp(glm::vec4(low, high), -kManyPixels, kManyPixels);
+    return pixels;
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Counter-clockwise (Andrew 1979, "Another efficient algorithm for convex hulls in two dimensions").
+std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
+    std::ranges::sort(points,
+                      [](const glm::dvec2& a, const glm::dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::vector<glm::dvec2> hull;
+    for (int side = 0; side < 2; ++side) {
+        const size_t first = hull.size();
+        for (const glm::dvec2& point : points) {
+            while (hull.size() >= first + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0)
+                hull.pop_back();
+            hull.push_back(point);
+        }
+        if (!hull.empty()) hull.pop_back();  // it begins the other side
+        std::ranges::reverse(points);
+    }
+    return hull;
+}
+
+/// The part of a convex polygon where a linear function of the place is not negative (Sutherland and Hodgman 1974).
+template <class Inside>
+std::vector<glm::dvec2> clipped(const std::vector<glm::dvec2>& polygon, const Inside& inside) {
+    std::vector<glm::dvec2> out;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double atA = inside(a), atB = inside(b);
+        if (atA >= 0) out.push_back(a);
+        if ((atA >= 0) != (atB >= 0)) out.push_back(glm::mix(a, b, atA / (atA - atB)));
+    }
+    return out;
+}
+
+}  // namespace
+
+bool magnified(const DrawNode& node, const Tiling& tiling, const View& view) {
+    const GroundRect ground = tiling.bounds(node.cell);
+    const double x = std::max({ground.west - view.eye.x, view.eye.x - ground.east, 0.0});
+    const double y = std::max({ground.south - view.eye.y, view.eye.y - ground.north, 0.0});
+    const double z = std::max(
+        {view.exaggeration * node.minHeight - view.eye.z, view.eye.z - view.exaggeration * node.maxHeight, 0.0});
+    return tiling.spacing(node.heightTile.level) * view.focalPixels() > std::hypot(x, y, z);
+}
+
+glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
+    glm::dvec2 least(kUnbounded), greatest(-kUnbounded);
+    for (const glm::dvec2& point : outlinePixels(node, view)) {
+        least = glm::min(least, point);
+        greatest = glm::max(greatest, point);
+    }
+    return glm::clamp(glm::vec4(least - 1.0, greatest + 1.0), -kManyPixels, kManyPixels);
+}
+
+double coveredPixels(const interop::NodeParameters& node, const View& view) {
+    std::vector<glm::dvec2> outline = convexHull(outlinePixels(node, view));
+    for (const int axis : {0, 1}) {
+        const double most = axis == 0 ? view.width : view.height;
+        outline = clipped(outline, [&](const glm::dvec2& point) { return point[axis]; });
+        outline = clipped(outline, [&](const glm::dvec2& point) { return most - point[axis]; });
+    }
+    double twiceArea = 0;
+    for (size_t i = 0; i < outline.size(); ++i) twiceArea += cross(outline[i], outline[(i + 1) % outline.size()]);
+    return std::abs(twiceArea) / 2;
 }
 
 interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& source, const Tiling& tiling,

@@ -35,6 +35,9 @@ struct NodeSource {
 /// cover only part of it.
 [[nodiscard]] glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view);
 
+/// How many pixels of the picture a node's box covers as it is seen: the area of its outline within the picture.
+[[nodiscard]] double coveredPixels(const interop::NodeParameters& node, const View& view);
+
 /// Place (metres, z a height, not exaggerated) of a point of a height tile's frame, in double.
 [[nodiscard]] glm::dvec3 worldFromTile(const TileId& heightTile, const HeightEncoding& encoding, const Tiling& tiling,
                                        const glm::dvec3& tilePoint);

@@ -1,5 +1,6 @@
 #include "client/render/raster_launch.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace terray {
@@ -57,47 +58,46 @@ void RasterLaunch::cast(const CastFrame& frame) {
     glEnable(GL_CULL_FACE);
     glFrontFace(GL_CW);
     glDepthFunc(GL_GREATER);
-    if (entryOf(frame.features.method).geometry) {
-        castGeometry(frame, targets);
-    } else {
-        castRays(frame, targets);
+    if (std::ranges::count(frame.rasterised, 1) > 0) {
+        if (!geometry_) geometry_ = std::make_unique<GeometryPass>(shaders_, vertexArray_);
+        geometry_->begin(frame);
+    }
+    for (size_t node = 0; node < frame.nodes.size(); ++node) {
+        if (frame.rasterised[node] != 0) {
+            drawGeometry(frame, targets, node);
+        } else {
+            castRays(frame, targets, node);
+        }
     }
     glDisable(GL_CULL_FACE);
     glDisable(GL_DEPTH_TEST);
 }
 
-void RasterLaunch::castRays(const CastFrame& frame, const RasterTargets& targets) {
-    const bool occlusion = frame.features.occlusion;
-    // Nodes of columns are drawn by a program that knows of no patches.
-    FeatureSet columns = frame.features.marching();
-    columns.bilinear = false;
-    const GlProgram& columnProgram = marchPrograms_.get(columns);
-    const GlProgram& patchProgram = marchPrograms_.get(frame.features.marching());
-    FeatureSet placing;
-    placing.curved = frame.features.curved;
-    const GlProgram* idProgram = occlusion ? &idPrograms_.get(placing) : nullptr;
+void RasterLaunch::castRays(const CastFrame& frame, const RasterTargets& targets, size_t node) {
     glCullFace(GL_FRONT);
-    for (size_t node = 0; node < frame.nodes.size(); ++node) {
-        if (occlusion) {
-            frame.enter(GpuPass::id);
-            glDepthFunc(GL_GREATER);
-            glDepthMask(GL_FALSE);
-            draw(*idProgram, targets.idFramebuffer, node);
-            glDepthFunc(GL_ALWAYS);
-            glDepthMask(GL_TRUE);
-        }
-        frame.enter(GpuPass::march);
-        const bool bilinear = (frame.nodes[node].source.w & TERRAY_BILINEAR_BIT) != 0;
-        draw(bilinear ? patchProgram : columnProgram, targets.marchFramebuffer, node);
+    if (frame.features.occlusion) {
+        FeatureSet placing;
+        placing.curved = frame.features.curved;
+        frame.enter(GpuPass::id);
+        glDepthFunc(GL_GREATER);
+        glDepthMask(GL_FALSE);
+        draw(idPrograms_.get(placing), targets.idFramebuffer, node);
+        glDepthFunc(GL_ALWAYS);
+        glDepthMask(GL_TRUE);
     }
+    frame.enter(GpuPass::march);
+    // Nodes of columns are drawn by a program that knows of no patches.
+    FeatureSet marching = frame.features.marching();
+    marching.bilinear = (frame.nodes[node].source.w & TERRAY_BILINEAR_BIT) != 0;
+    draw(marchPrograms_.get(marching), targets.marchFramebuffer, node);
 }
 
-void RasterLaunch::castGeometry(const CastFrame& frame, const RasterTargets& targets) {
-    if (!geometry_) geometry_ = std::make_unique<GeometryPass>(shaders_, vertexArray_);
+void RasterLaunch::drawGeometry(const CastFrame& frame, const RasterTargets& targets, size_t node) {
     frame.enter(GpuPass::march);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.marchFramebuffer.name());
-    geometry_->begin(frame);
-    for (size_t node = 0; node < frame.nodes.size(); ++node) geometry_->draw(frame, node);
+    glDepthFunc(GL_GREATER);
+    geometry_->draw(frame, node);
+    glBindVertexArray(vertexArray_.name());
 }
 
 void RasterLaunch::resolve(const CastFrame& frame) {

@@ -18,8 +18,8 @@ class RasterLaunch {
   public:
     explicit RasterLaunch(const ShaderLibrary& shaders);
 
-    /// Fills hit, node and, with statistics, steps of the targets. Methods that rasterise geometry draw that instead of
-    /// boxes.
+    /// Fills hit, node and, with statistics, steps of the targets. Nodes that CastFrame::rasterised names are drawn by
+    /// their geometry instead of their boxes.
     void cast(const CastFrame& frame);
     /// Fills colour and, with normals, normal. What the resolve shader reads must be bound.
     void resolve(const CastFrame& frame);
@@ -30,8 +30,8 @@ class RasterLaunch {
 
   private:
     void draw(const GlProgram& program, const GlFramebuffer& framebuffer, size_t node);
-    void castRays(const CastFrame& frame, const RasterTargets& targets);
-    void castGeometry(const CastFrame& frame, const RasterTargets& targets);
+    void castRays(const CastFrame& frame, const RasterTargets& targets, size_t node);
+    void drawGeometry(const CastFrame& frame, const RasterTargets& targets, size_t node);
 
     ProgramCache idPrograms_;
     ProgramCache marchPrograms_;

@@ -254,4 +254,27 @@ TerrainMesh triangulated(const Grid<uint16_t>& codes, const MeshTolerance& toler
     return Builder(heights, errors, tolerance.codes).take();
 }
 
+double estimatedTriangles(const Grid<uint16_t>& codes, const MeshTolerance& tolerance) {
+    TERRAY_CHECK_OP(codes.width(), ==, kHeightTileSide);
+    TERRAY_CHECK_OP(codes.height(), ==, kHeightTileSide);
+    const Heights heights(codes);
+    size_t triangles = 0;
+    const auto count = [&](const Triangle& t, const auto& self) -> void {
+        const double error = deviationOf(t, heights) + tolerance.sag * 2 * t.legSquared();
+        if (t.legSquared() <= 1 || error <= tolerance.codes) {
+            ++triangles;
+            return;
+        }
+        self({t.c, t.a, t.middle()}, self);
+        self({t.b, t.c, t.middle()}, self);
+    };
+    // Of the triangles with legs of 32, one in every 16, at another place of each.
+    constexpr size_t kFirst = 510, kSeeds = 512, kShare = 16;
+    static_assert(kFirst + 2 == kSeeds);
+    for (size_t n = 0; n < kSeeds / kShare; ++n) count(hierarchy()[kFirst + kShare * n + 7 * n % kShare], count);
+    // Splits that only conformity asks for are not among them.
+    constexpr double kForced = 1.25;
+    return kForced * kShare * static_cast<double>(triangles);
+}
+
 }  // namespace terray

@@ -151,6 +151,21 @@ void TerrainRenderer::bindShading(const RenderOptions& options) {
     glBindBufferBase(GL_UNIFORM_BUFFER, TERRAY_BUFFER_SHADING, shadingBuffer_.name());
 }
 
+void TerrainRenderer::chooseRasterised(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
+                                       const RenderOptions& options) {
+    rasterised_.assign(nodes.size(), entryOf(options.method.method).geometry ? 1 : 0);
+    if (options.method.method != Method::hybrid) return;
+    TERRAY_CHECK(options.drawCosts.has_value());
+    std::vector<NodeWork> work;
+    for (size_t n = 0; n < nodes.size(); ++n)
+        work.push_back(workOf(nodes_[n], view, tiles.methodTiles()->triangles(nodes_[n])));
+    rasterised_ = choice_.choose(nodes, work, *options.drawCosts);
+}
+
+size_t TerrainRenderer::rasterisedNodes() const {
+    return static_cast<size_t>(std::ranges::count(rasterised_, 1));
+}
+
 void TerrainRenderer::bindMethod(const MethodOptions& options, const GpuTiles& tiles) {
     if (entryOf(options.method).define.empty()) return;
     if (tiles.methodTiles() != nullptr) tiles.methodTiles()->bind();
@@ -262,6 +277,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
     } else {
         targets.dropShadow();
     }
+    chooseRasterised(view, nodes, tiles, options);
     glViewport(0, 0, view.width, view.height);
     bindShading(options);
     bindMethod(options.method, tiles);
@@ -272,11 +288,13 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
                     .features = features,
                     .targets = targets,
                     .timer = timer,
-                    .methodTiles = tiles.methodTiles()};
+                    .methodTiles = tiles.methodTiles(),
+                    .rasterised = rasterised_};
     const Launch launch = launchOf(frame, options);
     if (launch == Launch::compute) targets.dropRaster();
-    frame.features.occlusion =
-        options.occlusion && launch == Launch::raster && !entryOf(options.method.method).geometry;
+    // The ID pass is for rays.
+    const bool rays = !entryOf(options.method.method).geometry || options.method.method == Method::hybrid;
+    frame.features.occlusion = options.occlusion && launch == Launch::raster && rays;
     draw(frame, launch);
     if (overlay_) overlay_->draw(frame);
 

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "client/render/compute_launch.h"
+#include "client/render/draw_costs.h"
 #include "client/render/gpu_tiles.h"
 #include "client/render/overlay_pass.h"
 #include "client/render/raster_launch.h"
@@ -55,6 +56,7 @@ struct RenderOptions {
     bool occlusion = true;           ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
     MethodOptions method;  ///< that of GpuTilesOptions, where the method keeps something of each tile
+    std::optional<DrawCosts> drawCosts;  ///< Method::hybrid needs them, see draw_calibration.h
     /// The sky of the sun's elevation, and its light on the ground; off: a gradient, and light as under a sun at 40
     /// degrees. Heights count from the sea (z = 0).
     bool sky = false;
@@ -96,6 +98,8 @@ class TerrainRenderer {
 
     /// Of the last frame.
     [[nodiscard]] size_t bilinearNodes() const { return bilinearNodes_; }
+    /// Nodes of it that were rasterised as geometry.
+    [[nodiscard]] size_t rasterisedNodes() const;
 
     /// Bytes of the node buffer, the sky's table and the like.
     [[nodiscard]] uint64_t bufferBytes() const;
@@ -108,6 +112,8 @@ class TerrainRenderer {
                        const RenderOptions& options);
     void uploadFrame(const View& view, const RenderOptions& options);
     void makeSky(const View& view, const RenderOptions& options);
+    void chooseRasterised(const View& view, std::span<const DrawNode> nodes, const GpuTiles& tiles,
+                          const RenderOptions& options);
     void bindShading(const RenderOptions& options);
     void bindMethod(const MethodOptions& options, const GpuTiles& tiles);
     void bindTextures(const FrameTargets& targets, const GpuTiles& tiles, float anisotropy);
@@ -123,6 +129,8 @@ class TerrainRenderer {
     std::vector<DrawNode> drawn_;                 ///< of the last frame: nodes, then casters
     std::vector<interop::NodeParameters> nodes_;  ///< of these
     size_t bilinearNodes_ = 0;
+    std::vector<uint8_t> rasterised_;  ///< CastFrame::rasterised of the last frame
+    HybridChoice choice_;
     GlBuffer nodeBuffer_;
     GlBuffer frameBuffer_;
     GlSampler photoSampler_;

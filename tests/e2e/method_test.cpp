@@ -102,10 +102,11 @@ TEST_F(MethodTest, StreamedGroundWithHolesAndLevelJumpsIsDrawnByEveryMethod) {
     const ComputedDataset dataset(holed, {2048, 2048}, 2);
     for (const bool curved : {false, true})
         for (const std::string method :
-             {"march", "linear", "hull:stride=0.2,steps=100,more=300", "cones", "mesh:error=0.1"}) {
+             {"march", "linear", "hull:stride=0.2,steps=100,more=300", "cones", "mesh:error=0.1", "hybrid:error=0.1"}) {
             EngineOptions options = inspectedOptions();
             options.gpuHeightBytes = 6 * 720'000;  // ancestors stand in beside finer tiles
             options.render.method = methodNamed(method);
+            options.render.drawCosts = DrawCosts{.castPixel = 1, .meshTriangle = 0.02};
             if (curved) options.earth = {.shape = EarthShape::curved, .refraction = -200};
             const auto engine = engineWith(dataset.source(), method, options);
             const auto pyramid = engineWith(dataset.source(), "pyramid", options);
@@ -114,7 +115,8 @@ TEST_F(MethodTest, StreamedGroundWithHolesAndLevelJumpsIsDrawnByEveryMethod) {
                 found += compare(*engine, *pyramid, cameraAt({3000, 3000, 450}, heading, -25, 60), 2);
             EXPECT_GT(found.ground, 20000) << method << (curved ? " curved" : "");
             // Triangles have no walls down into holes: sky, or what is farther away, is seen there.
-            const bool walls = options.render.method.method != Method::mesh;
+            const bool walls =
+                options.render.method.method != Method::mesh && options.render.method.method != Method::hybrid;
             EXPECT_LE(found.seeThrough + found.coversSky, found.ground / (walls ? 50 : 15)) << method << curved;
             EXPECT_LE(found.far, found.ground / (walls ? 20 : 8)) << method << curved;
         }
@@ -155,6 +157,49 @@ TEST_F(MethodTest, NoHoleShowsBetweenTrianglesOfTilesOfAnyLevel) {
         EXPECT_LE(found.seeThrough, found.ground / 1000) << slots;
         EXPECT_LE(found.coversSky, found.ground / 1000) << slots;
     }
+}
+
+TEST_F(MethodTest, AHybridOfBothWaysHasNoHoleBetweenRaysAndTriangles) {
+    const ComputedDataset dataset(4096, 5, 42);
+    size_t rasterised = 0, drawn = 0;
+    for (const uint64_t slots : {8, 40}) {
+        EngineOptions options = inspectedOptions(Surface::bilinear);
+        options.gpuHeightBytes = slots * 720'000;
+        options.selection.tolerance = Pixels(0.25);
+        // Such that about half of the nodes are cheaper either way.
+        options.render.drawCosts = DrawCosts{.castPixel = 1, .meshTriangle = 0.02};
+        const auto hybrid = engineWith(dataset.source(), "hybrid", options);
+        const auto pyramid = engineWith(dataset.source(), "pyramid", options);
+        const glm::dvec3 middle(1000 + 10240, 5000 - 10240, dataset.source().metadata().maxHeight);
+        Difference found;
+        for (const double heading : {15.0, 100.0, 200.0, 290.0})
+            for (const double pitch : {-60.0, -8.0}) {
+                const Camera camera = cameraAt(middle, heading, pitch, 60);
+                found += compare(*hybrid, *pyramid, camera, 5);
+                const FrameReport report = hybrid->drawFrame(camera, true);
+                rasterised += report.rasterisedNodes;
+                drawn += report.nodes;
+            }
+        EXPECT_GT(found.ground, 50'000);
+        EXPECT_LE(found.seeThrough + found.coversSky, found.ground / 1000) << slots;
+    }
+    EXPECT_GT(rasterised, drawn / 8);
+    EXPECT_LT(rasterised, 7 * drawn / 8);
+}
+
+TEST_F(MethodTest, TheHybridOfOneWayIsThatMethod) {
+    const ComputedDataset dataset(2048, 5, 42);
+    EngineOptions options = inspectedOptions();
+    const Camera camera = cameraAt({3000, 3000, dataset.source().metadata().maxHeight}, 30, -20, 60);
+    const auto picture = [&](const std::string& method) {
+        const auto engine = engineWith(dataset.source(), method, options);
+        engine->drawFrame(camera, true);
+        return std::pair(engine->targets().readNodes(), engine->targets().readHits());
+    };
+    options.render.drawCosts = DrawCosts{.meshNode = 1};
+    EXPECT_TRUE(picture("hybrid") == picture("pyramid"));
+    options.render.drawCosts = DrawCosts{.castNode = 1};
+    EXPECT_TRUE(picture("hybrid") == picture("mesh"));
 }
 
 TEST_F(MethodTest, AFewSamplesMissAWallThatThePyramidHits) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "client/render/feature_set.h"
+#include "client/render/gpu_tiles.h"
 #include "client/render/shader_library.h"
 #include "tests/render/gl_test.h"
 #include "tests/render/preprocessed.h"
@@ -150,6 +151,36 @@ TEST_F(PayForUse, AMethodReadsHeightsAndWhatItSearchesBy) {
                 buffers.insert("MethodBuffer");
                 EXPECT_EQ(buffersOf(program), buffers);
             }
+}
+
+TEST_F(PayForUse, OnlyTheMethodThatIsChosenKeepsSomethingOfTiles) {
+    // Of the others neither a buffer nor a texture exists.
+    for (const MethodEntry& entry : kMethods) {
+        const bool keeps = entry.geometry || entry.method == Method::cones;
+        GpuTiles tiles(shaders_, {.heightTiles = 2, .method = {.method = {.method = entry.method}}});
+        EXPECT_EQ(tiles.methodTiles() != nullptr, keeps) << entry.name;
+        HeightTile tile;
+        tile.codes = Grid<uint16_t>({kHeightTileSide, kHeightTileSide}, uint16_t{100});
+        EXPECT_TRUE(tiles.uploadHeights(tile).done);
+        // What the hybrid keeps of a tile is made when it is first drawn so.
+        EXPECT_EQ(tiles.allocatedBytes().method > 0, keeps && entry.method != Method::hybrid) << entry.name;
+    }
+}
+
+TEST_F(PayForUse, AMethodsShadersAreThoseItNamesAndNoOthers) {
+    struct Part {
+        Method method;
+        const char* text;  ///< that its own module alone holds
+    };
+    constexpr Part kParts[] = {{Method::linear, "method.linear"}, {Method::cones, "sampler2DArray cones"}};
+    for (const char* root : {"march.frag", "march.comp"})
+        for (const MethodEntry& entry : kMethods) {
+            const ShaderDefines defines = FeatureSet{.method = entry.method}.marching().defines();
+            const std::string code = preprocessed(shaders_.resolve(root, defines).value().text);
+            for (const Part& part : kParts)
+                EXPECT_EQ(code.find(part.text) != std::string::npos, part.method == entry.method)
+                    << root << " of " << entry.name << ": " << part.text;
+        }
 }
 
 const std::vector<std::vector<std::string>> kResolvePrograms = {{"screen.vert", "resolve.frag"}, {"resolve.comp"}};

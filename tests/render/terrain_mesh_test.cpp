@@ -132,6 +132,25 @@ TEST(TerrainMesh, OfAPlaneTakesAsFewTrianglesAsBlocksAllow) {
     EXPECT_GT(triangulated(codes, {.codes = 0.01, .sag = 1e-4}).triangles(), 1000u) << "edges that the earth bends";
 }
 
+TEST(TerrainMesh, TrianglesAreEstimatedToAFactorOfTwo) {
+    std::mt19937 random(3);
+    const Codes hills = [](int x, int y) {
+        return static_cast<int>(30000 + 8000 * std::sin(x / 31.0) * std::cos(y / 47.0) + 300 * std::sin(x * y / 997.0));
+    };
+    const Codes noise = [&](int, int) { return static_cast<int>(random() % 2000) + 1; };
+    const Codes holed = [&](int x, int y) { return (x / 50 + y / 50) % 3 == 0 ? 0 : hills(x, y); };
+    for (const Codes& code : {hills, noise, holed}) {
+        const Grid<uint16_t> codes = codesOf(code);
+        for (const MeshTolerance& tolerance :
+             {MeshTolerance{.codes = 1}, MeshTolerance{.codes = 60}, MeshTolerance{.codes = 60, .sag = 1}}) {
+            const auto made = static_cast<double>(triangulated(codes, tolerance).triangles());
+            ASSERT_GT(made, 3000);
+            EXPECT_GT(estimatedTriangles(codes, tolerance), made / 2) << tolerance.codes << ' ' << tolerance.sag;
+            EXPECT_LT(estimatedTriangles(codes, tolerance), made * 2) << tolerance.codes << ' ' << tolerance.sag;
+        }
+    }
+}
+
 TEST(TerrainMesh, LeavesOutHolesAndKeepsTheirRims) {
     const auto hole = [](int x, int y) { return x >= 100 && x < 140 && y >= 200 && y < 300; };
     const Grid<uint16_t> codes = codesOf([&](int x, int y) { return hole(x, y) ? 0 : 1000 + x; });
