@@ -115,6 +115,10 @@ EarthShape earthShapeNamed(const std::string& name) {
 void EngineCommandLine::declare(CommandLine& line) {
     sun_ = degreesOf(RenderOptions().sunDirection);
     line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
+    line.option(
+        "--lod-distance", lodDistance_, "SAMPLES",
+        "of heights by distance in place of --tolerance, as paper 000 has it: the finest up to so many of their "
+        "samples away, half as fine at each doubling");
     line.option("--imagery-tolerance", imageryTolerance_, "PIXELS", "largest projected side of a photo's texel (1)");
     line.flag("--no-imagery", noImagery_, "ignore the dataset's photo");
     line.option("--sun", sun_, "AZIMUTH,ELEVATION", "degrees from grid north and above the horizon (" + sun_ + ")")
@@ -182,6 +186,8 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     EngineOptions options;
     options.render.shading = shading();
     options.selection.tolerance = Pixels(tolerance_);
+    if (lodDistance_) requireRange("--lod-distance", *lodDistance_, 1, 1e9);
+    options.selection.lodDistance = lodDistance_;
     options.selection.imageryTolerance = Pixels(imageryTolerance_);
     options.selection.useImagery = datasetHasImagery && !noImagery_ && needsOf(options.render.shading.mode).photoTiles;
     options.render.sunDirection = sunDirection(sun_);
@@ -228,6 +234,7 @@ ShadingOptions EngineCommandLine::shading() const {
 
 Json EngineCommandLine::toJson() const {
     return Json::Object{{"tolerance", tolerance_},
+                        {"lod-distance", lodDistance_ ? Json(*lodDistance_) : Json()},
                         {"imagery-tolerance", imageryTolerance_},
                         {"no-imagery", noImagery_},
                         {"sun", sunTime_.empty() ? Json(sun_) : Json()},

@@ -40,6 +40,7 @@ class EngineCommandLine {
     OverlayCommandLine overlay_;
     std::string edits_;
     double tolerance_ = SelectionOptions().tolerance.value();
+    std::optional<double> lodDistance_;
     double imageryTolerance_ = SelectionOptions().imageryTolerance.value();
     bool noImagery_ = false;
     std::string sun_;

@@ -76,6 +76,8 @@ class Traversal {
     bool concerns(const TileId& cell, const HeightRange& heights, bool& seen) const;
     void request(TileLayer layer, const Cell& cell, Pixels error);
     void chooseHeights(Cell& cell, Metres distance);
+    /// Whether a tile's heights are as fine as its distance asks.
+    [[nodiscard]] bool heightsSuffice(const TileId& cell, Metres distance) const;
     void chooseImagery(Cell& cell, Metres distance);
     std::optional<Cell> childOf(const Cell& cell, uint32_t quadrant) const;
     /// Of a height error as it shows in an exaggerated picture.
@@ -185,14 +187,20 @@ std::optional<Cell> Traversal::childOf(const Cell& cell, uint32_t quadrant) cons
     return child;
 }
 
+bool Traversal::heightsSuffice(const TileId& cell, Metres distance) const {
+    if (!options_.lodDistance)
+        return heightError(tree_.heights(cell)->record, distance) <= options_.tolerance * coarsening_;
+    const double finer = tree_.tiling().spacing(cell.level + 1);
+    return coarsening_ * distance.value() >= *options_.lodDistance * finer;
+}
+
 void Traversal::chooseHeights(Cell& cell, Metres distance) {
     Choice& choice = cell.heights;
     if (choice.settled) return;
     const auto& own = *tree_.heights(cell.id);
     const Pixels standInError = heightError(tree_.heights(*choice.drawn)->record, distance);
     if (own.resident) choice.drawn = cell.id;
-    const bool fineEnough = cell.id.level == tree_.finestHeightLevel() ||
-                            heightError(own.record, distance) <= options_.tolerance * coarsening_;
+    const bool fineEnough = cell.id.level == tree_.finestHeightLevel() || heightsSuffice(cell.id, distance);
     const bool mustLoadFirst = !own.childrenKnown || cell.id.level - choice.drawn->level >= kMaxStandInLevels;
     if (!fineEnough && !mustLoadFirst) return;
     choice.settled = true;

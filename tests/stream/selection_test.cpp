@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/stream/selection_geometry.h"
 #include "tests/stream/views.h"
 
 namespace terray::test {
@@ -100,6 +101,40 @@ TEST(Selection, HonoursTheToleranceOrSaysWhatIsMissing) {
         }
         ASSERT_TRUE(std::is_sorted(selection.wanted.begin(), selection.wanted.end(),
                                    [](const auto& a, const auto& b) { return a.priority > b.priority; }));
+    }
+}
+
+TEST(Selection, ByDistanceAloneEachDoublingIsHalfAsFine) {
+    const FakeDataset& dataset = hillyDataset();
+    const Tiling& tiling = dataset.metadata.tiling;
+    TileTree tree = rootsOnly(dataset);
+    SelectionOptions options;
+    options.useImagery = false;
+    options.tolerance = Pixels(1e6);  // asks for nothing
+    for (const double distance : {256.0, 1024.0, 8192.0}) {
+        options.lodDistance = distance;
+        for (const View& view : {overview(), closeUp()}) {
+            size_t finest = 0;
+            for (const DrawNode& node : settle(tree, dataset, view, options).nodes) {
+                const uint32_t level = node.heightTile.level;
+                const auto farther = [&](const TileId& cell, double least) {
+                    const auto& record = tree.heights(cell)->record;
+                    const Box box = seenBoxOf(cell, {record.minHeight, record.maxHeight}, tiling, view);
+                    return distanceTo(box, view.eye).value() >= least;
+                };
+                finest += level == tiling.finestLevel ? 1 : 0;
+                EXPECT_EQ(node.cell, node.heightTile);
+                if (level < tiling.finestLevel) {
+                    EXPECT_TRUE(farther(node.cell, distance * tiling.spacing(level + 1)));
+                }
+                if (level > 0) {
+                    EXPECT_FALSE(farther(node.cell.parent(), distance * tiling.spacing(level)));
+                }
+            }
+            if (distance > 8000) {
+                EXPECT_GT(finest, 0u);
+            }
+        }
     }
 }
 
