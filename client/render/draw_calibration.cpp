@@ -20,7 +20,7 @@ namespace {
 constexpr int kSide = 384;       // of the picture, pixels
 constexpr double kSpacing = 10;  // metres between samples
 constexpr double kTileSide = kSpacing * kTileCore;
-constexpr int kRepeats = 3;  // of which the fastest counts
+constexpr int kRepeats = 4;  // of which the fastest counts
 
 /// Hills with slopes at every length from a sample to the tile: mountains as much as roughness.
 int codeAt(int column, int row) {
@@ -73,16 +73,12 @@ class Scene {
         const NodeSource source{.heights = *tiles_.heights(node_.heightTile)};
         const interop::NodeParameters node = nodeParameters(node_, source, tiling_, view);
         return {.work = workOf(node, view, tiles_.methodTiles()->triangles(node)),
-                .castMs = castMs ? *castMs : timeOf(view, {}),
-                .meshMs = timeOf(view, method_)};
+                .castMs = castMs ? *castMs : milliseconds(view, {}, 1),
+                .meshMs = milliseconds(view, method_, 1),
+                .emptyMs = milliseconds(view, {}, 0)};
     }
 
   private:
-    /// Beyond a frame of nothing.
-    double timeOf(const View& view, const MethodOptions& method) {
-        constexpr double kLeast = 1e-3;  // a clock's noise may be more than a small node
-        return std::max(milliseconds(view, method, 1) - milliseconds(view, method, 0), kLeast);
-    }
     /// Wall clock around glFinish, which also counts what the driver does on the CPU.
     double milliseconds(const View& view, const MethodOptions& method, size_t nodes) {
         RenderOptions options;

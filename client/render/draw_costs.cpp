@@ -33,14 +33,15 @@ double expectedSteps(const interop::NodeParameters& node) {
 /// A weighed sample of one way: features and the time that they took.
 struct Equation {
     glm::dvec3 features;
-    double milliseconds;
+    double milliseconds;  ///< of the node
+    double weight;        ///< one over the whole frame's
 };
 
 /// Squares of relative errors.
 double misfit(std::span<const Equation> equations, const glm::dvec3& costs) {
     double sum = 0;
     for (const Equation& e : equations) {
-        const double error = glm::dot(e.features, costs) / e.milliseconds - 1;
+        const double error = e.weight * (glm::dot(e.features, costs) - e.milliseconds);
         sum += error * error;
     }
     return sum;
@@ -54,11 +55,11 @@ glm::dvec3 solved(std::span<const Equation> equations, unsigned mask) {
         if ((mask >> i & 1) == 0) matrix[i][i] = 1;
     }
     for (const Equation& e : equations) {
-        glm::dvec3 row = e.features / e.milliseconds;
+        glm::dvec3 row = e.weight * e.features;
         for (int i = 0; i < 3; ++i)
             if ((mask >> i & 1) == 0) row[i] = 0;
         matrix += glm::outerProduct(row, row);
-        right += row;
+        right += e.weight * e.milliseconds * row;
     }
     return glm::inverse(matrix) * right;
 }
@@ -91,8 +92,11 @@ DrawCosts fittedCosts(std::span<const CostSample> samples) {
     std::vector<Equation> cast, mesh;
     for (const CostSample& sample : samples) {
         const NodeWork& work = sample.work;
-        cast.push_back({{1, work.pixels, work.pixels * work.steps}, sample.castMs});
-        mesh.push_back({{1, work.pixels, work.triangles}, sample.meshMs});
+        const auto equation = [&](const glm::dvec3& features, double milliseconds) {
+            return Equation{features, milliseconds - sample.emptyMs, 1 / milliseconds};
+        };
+        cast.push_back(equation({1, work.pixels, work.pixels * work.steps}, sample.castMs));
+        mesh.push_back(equation({1, work.pixels, work.triangles}, sample.meshMs));
     }
     const glm::dvec3 rays = fitted(cast), triangles = fitted(mesh);
     return {.castNode = rays.x,

@@ -45,14 +45,16 @@ struct CostSample {
     NodeWork work;
     double castMs = 0;
     double meshMs = 0;
+    double emptyMs = 0;  ///< of these, what the frame takes without the node
 };
 
-/// The costs that come nearest to samples: least squares of relative errors among costs that are not negative.
+/// The costs that come nearest to samples: least squares of errors relative to the frame's time, among costs that are
+/// not negative.
 /// @param samples  at least one, times > 0
 [[nodiscard]] DrawCosts fittedCosts(std::span<const CostSample> samples);
 
-/// Chooses for each node of a frame whether it is rasterised. A cell begins with rays, since its triangles may have to be
-/// made, and keeps its way until the other one is told to take less than 0.8 of its time, so that nodes do not flip.
+/// Chooses for each node of a frame whether it is rasterised. A cell begins with rays, since its triangles may have to
+/// be made, and keeps its way until the other one is told to take less than 0.8 of its time, so that nodes do not flip.
 class HybridChoice {
   public:
     /// @return  of each node, 1: rasterised. Cells that are not among the nodes are forgotten.
