@@ -178,13 +178,17 @@ Awaitable<void> Connection::send(const Response& response, std::string head, Til
     }
 }
 
-size_t Connection::sendAtOnce(std::string_view head, const Bytes& tile) {
-    const std::string_view body(reinterpret_cast<const char*>(tile.data()), tile.size());
+size_t Connection::sendAtOnce(std::string_view head, const KeptTile& tile) {
+    const int socket = socket_.native_handle();
+    const auto sendNext = [&](size_t done) {
+        const iovec piece = pieceOf(head.substr(std::min(done, head.size())));
+        if (piece.iov_len > 0) return sendSome(socket, {&piece, 1}, true);
+        const size_t ofTile = done - head.size();
+        return sendFileSome(socket, tile.descriptor(), tile.offset() + ofTile, tile.size() - ofTile);
+    };
     size_t done = 0;
-    while (done < head.size() + body.size()) {
-        const size_t ofHead = std::min(done, head.size());
-        const std::array<iovec, 2> pieces = {pieceOf(head.substr(ofHead)), pieceOf(body.substr(done - ofHead))};
-        const IoStep step = sendSome(socket_.native_handle(), pieces, false);
+    while (done < head.size() + tile.size()) {
+        const IoStep step = sendNext(done);
         if (step.outcome == Outcome::ended) failed_ = true;
         if (step.outcome != Outcome::progressed) break;
         done += step.bytes;

@@ -38,10 +38,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Awaitable<bool> answer(const Head& head);
     /// A tile's bytes through the store; waits if they have to be read. Null: they cannot be.
     Awaitable<TileBytes> fetch(const StoredTile& tile);
-    /// Sends an answer, to its end unless `failed_`. @param tile  bytes of the body if they are at hand
+    /// Sends an answer, to its end unless `failed_`. @param tile  bytes of the body if they are in memory
     Awaitable<void> send(const Response& response, std::string head, TileBytes tile);
-    /// Sends head and tile from memory as far as the client takes them without waiting. @return bytes of both sent
-    [[nodiscard]] size_t sendAtOnce(std::string_view head, const Bytes& tile);
+    /// Sends head and tile as far as the client takes them without waiting. @return bytes of both sent
+    [[nodiscard]] size_t sendAtOnce(std::string_view head, const KeptTile& tile);
     Awaitable<void> sendPieces(std::span<iovec> pieces, bool moreFollows);
     /// @param done  bytes of it that were sent before
     Awaitable<void> sendSlice(const ArchiveSlice& slice, uint64_t done);

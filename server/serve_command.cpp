@@ -129,7 +129,7 @@ ExitCode runServer(const std::vector<std::string>& arguments) {
 
     const sigset_t signals = handledSignals();
     ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before there are threads: they inherit it
-    std::signal(SIGPIPE, SIG_IGN);                    // sendfile to a client that has gone
+    std::signal(SIGPIPE, SIG_IGN);                    // a client, or a reader of the log, that has gone
 
     const auto catalogue = openCatalogue(parseSpecs(settings.datasets));
     const Milliseconds idleTimeout(static_cast<int64_t>(settings.idleTimeout * 1000));

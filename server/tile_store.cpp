@@ -15,9 +15,9 @@ void add(std::atomic<uint64_t>& counter) {
     counter.fetch_add(1, kRelaxed);
 }
 
-TileBytes readBytes(const ServedArchive& archive, ByteRange range) {
-    auto bytes = archive.reader().source().read(range.offset, range.length);
-    return bytes ? std::make_shared<const Bytes>(*std::move(bytes)) : nullptr;
+/// What a kept tile counts as.
+uint64_t costOf(uint64_t size) {
+    return TileMemory::roomFor(size) + kEntryBytes;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ TileBytes TileStore::use(const StoredTile& tile) {
     add(metrics_.tileHits);
     if (!entry->wasAsked) {
         add(metrics_.aheadUsed);
-        aheadBytes_ -= entry->bytes->size() + kEntryBytes;
+        aheadBytes_ -= costOf(entry->bytes->size());
     }
     asked_.splice(asked_.begin(), entriesOf(*entry), entry);
     entry->wasAsked = true;
@@ -96,12 +96,17 @@ void TileStore::runReader() {
     }
 }
 
+TileBytes TileStore::readBytes(const StoredTile& tile) const {
+    const auto bytes = tile.archive->reader().source().read(tile.range.offset, tile.range.length);
+    return bytes ? TileMemory::keep(memory_, *bytes) : nullptr;
+}
+
 void TileStore::readTile(const Key& key, std::unique_lock<std::mutex>& lock) {
     Pending& pending = pending_.at(key);  // stays where it is: only this thread erases it
     pending.isStarted = true;
     const StoredTile tile = pending.tile;
     lock.unlock();
-    TileBytes bytes = readBytes(*tile.archive, tile.range);
+    TileBytes bytes = readBytes(tile);
     lock.lock();
     const std::vector<Done> waiters = std::move(pending.waiters);
     pending_.erase(key);
@@ -124,7 +129,7 @@ void TileStore::readChildren(const StoredTile& tile, std::unique_lock<std::mutex
         lock.unlock();
         const auto range = tile.archive->reader().locate(id);
         lock.lock();
-        const bool fits = range && *range && (*range)->length + kEntryBytes <= options_.budgetBytes / 4;
+        const bool fits = range && *range && costOf((*range)->length) <= options_.budgetBytes / 4;
         if (!fits || kept_.contains(key) || pending_.contains(key)) continue;
         add(metrics_.aheadReads);
         pending_.emplace(key, Pending{.tile = {tile.archive, id, **range}, .isStarted = true});
@@ -133,7 +138,7 @@ void TileStore::readChildren(const StoredTile& tile, std::unique_lock<std::mutex
 }
 
 void TileStore::keep(const Key& key, TileBytes bytes, bool wasAsked) {
-    const uint64_t size = bytes->size() + kEntryBytes;
+    const uint64_t size = costOf(bytes->size());
     const uint64_t room = wasAsked ? options_.budgetBytes : options_.budgetBytes / 4;
     if (size > room) return;
     Entries& entries = wasAsked ? asked_ : ahead_;
@@ -152,7 +157,7 @@ void TileStore::evict() {
 
 void TileStore::drop(Entries& from) {
     const Entry& last = from.back();
-    const uint64_t size = last.bytes->size() + kEntryBytes;
+    const uint64_t size = costOf(last.bytes->size());
     bytes_ -= size;
     if (!last.wasAsked) aheadBytes_ -= size;
     kept_.erase(last.key);

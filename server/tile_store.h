@@ -11,15 +11,15 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/bytes.h"
 #include "common/tile_id.h"
 #include "server/metrics.h"
 #include "server/served_dataset.h"
+#include "server/tile_memory.h"
 
 namespace terray::server {
 
-/// The bytes of a stored tile; null: they cannot be read.
-using TileBytes = std::shared_ptr<const Bytes>;
+/// The bytes of a stored tile in memory; null: they cannot be read.
+using TileBytes = std::shared_ptr<const KeptTile>;
 
 /// A tile of an archive, found already.
 struct StoredTile {
@@ -29,7 +29,7 @@ struct StoredTile {
 };
 
 struct TileStoreOptions {
-    uint64_t budgetBytes = uint64_t{256} << 20;  ///< of tiles kept
+    uint64_t budgetBytes = uint64_t{256} << 20;  ///< of tiles kept, in whole pages
     int readers = 4;                             ///< threads that wait for the disk, so that no connection's does
     bool readsAhead = true;
 };
@@ -79,7 +79,8 @@ class TileStore {
 
     [[nodiscard]] static Key keyOf(const StoredTile& tile) { return {tile.archive->serial(), tile.id}; }
     [[nodiscard]] Entries& entriesOf(const Entry& entry) { return entry.wasAsked ? asked_ : ahead_; }
-    // All below: the lock is held, except in runReader() and readTile().
+    // All below: the lock is held, except in runReader(), readTile() and readBytes().
+    [[nodiscard]] TileBytes readBytes(const StoredTile& tile) const;
     [[nodiscard]] TileBytes use(const StoredTile& tile);
     void keep(const Key& key, TileBytes bytes, bool wasAsked);
     void evict();
@@ -91,6 +92,7 @@ class TileStore {
 
     TileStoreOptions options_;
     Metrics& metrics_;
+    std::shared_ptr<TileMemory> memory_ = std::make_shared<TileMemory>();
     std::mutex mutex_;
     std::condition_variable wake_;
     bool stops_ = false;

@@ -102,7 +102,7 @@ TEST_F(Conformance, AnswersBadRequestsAndEndsTheConnection) {
 }
 
 TEST(ConformanceOfTiles, IsTheSameWithAndWithoutACache) {
-    constexpr uint64_t kBudgets[] = {0, 1, 4000, uint64_t{1} << 20};  // 1: nothing fits, 4000: a few do
+    constexpr uint64_t kBudgets[] = {0, 1, 40000, uint64_t{1} << 20};  // 1: nothing fits, 40000: a few do
     for (const uint64_t budget : kBudgets) {
         RunningServer running({.threads = 2, .cacheBytes = budget});
         RawClient client = running.client();

@@ -1,6 +1,7 @@
 #pragma once
 // A server in this process that serves the small dataset as "small", at a free port of 127.0.0.1.
 
+#include <csignal>
 #include <string>
 
 #include "server/server.h"
@@ -16,6 +17,7 @@ class RunningServer {
     /// @param prepare  called with the dataset's directory before it is opened
     template <class Prepare>
     RunningServer(ServerOptions options, Prepare prepare) : directory_(temporary_ / "small") {
+        std::signal(SIGPIPE, SIG_IGN);
         writeSmallDataset(directory_);
         prepare(directory_);
         if (options.listen == ServerOptions().listen) options.listen = "127.0.0.1:0";

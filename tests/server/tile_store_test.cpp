@@ -7,6 +7,8 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/common/random.h"
 #include "tests/common/temporary_directory.h"
@@ -14,6 +16,9 @@
 
 namespace terray::server {
 namespace {
+
+/// What each of these tiles takes: a page, and 256 bytes for keeping it.
+const uint64_t kCost = TileMemory::roomFor(300) + 256;
 
 /// A file whose reads of tiles can be held up, made to fail, and are counted.
 class GatedSource final : public ByteSource {
@@ -76,7 +81,11 @@ class Tiles : public testing::Test {
         return bytes;
     }
     static std::string text(const TileBytes& bytes) {
-        return bytes ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : "";
+        std::string text(bytes ? bytes->size() : 0, '\0');
+        const auto read = [&] {
+            return ::pread(bytes->descriptor(), text.data(), text.size(), static_cast<off_t>(bytes->offset()));
+        };
+        return bytes && read() == static_cast<ssize_t>(text.size()) ? text : "";
     }
     static void waitFor(const std::atomic<uint64_t>& counter, uint64_t value) {
         while (counter < value) std::this_thread::yield();
@@ -125,16 +134,26 @@ TEST_F(Tiles, ThatCannotBeReadSettleEveryRequestAndAreTriedAgain) {
 }
 
 TEST_F(Tiles, StayWithinTheBudgetAndThoseAskedForLastStay) {
-    constexpr uint64_t kBudget = 5 * 700;  // each takes some 300 bytes and 256 for keeping it
-    TileStore store({.budgetBytes = kBudget, .readsAhead = false}, metrics_);
+    const uint64_t budget = 5 * kCost;
+    TileStore store({.budgetBytes = budget, .readsAhead = false}, metrics_);
     for (uint32_t x = 0; x < 7; ++x) {
         EXPECT_EQ(smallTile("imagery", {3, x, 0}), text(get(store, {3, x, 0})));
-        EXPECT_LE(metrics_.cacheBytes, kBudget);
+        EXPECT_LE(metrics_.cacheBytes, budget);
         EXPECT_NE(nullptr, store.find(tile({3, 0, 0}))) << "asked for again and again";
     }
     EXPECT_GT(metrics_.tileEvictions, 0);
     EXPECT_NE(nullptr, store.find(tile({3, 6, 0})));
     EXPECT_EQ(nullptr, store.find(tile({3, 1, 0})));
+}
+
+TEST_F(Tiles, GiveTheirMemoryBackWhenNobodyHoldsThem) {
+    TileStore store({.budgetBytes = 2 * kCost, .readsAhead = false}, metrics_);
+    const TileBytes held = get(store, {3, 0, 0});
+    for (uint32_t x = 1; x < 7; ++x) (void)get(store, {3, x, 0});
+    EXPECT_EQ(smallTile("imagery", {3, 0, 0}), text(held)) << "dropped from the cache, but not from here";
+    struct stat status {};
+    ASSERT_EQ(0, ::fstat(held->descriptor(), &status));
+    EXPECT_EQ(3 * TileMemory::roomFor(300), static_cast<uint64_t>(status.st_blocks) * 512) << "two kept, one held";
 }
 
 TEST_F(Tiles, MakeTheirChildrenBeReadAhead) {
@@ -150,13 +169,12 @@ TEST_F(Tiles, MakeTheirChildrenBeReadAhead) {
 }
 
 TEST_F(Tiles, ReadAheadTakeAQuarterOfTheBudgetAtMost) {
-    constexpr uint64_t kBudget = 8 * 700;
-    TileStore store({.budgetBytes = kBudget}, metrics_);
+    const uint64_t budget = 8 * kCost;
+    TileStore store({.budgetBytes = budget}, metrics_);
     const TileBytes root = get(store, {0, 0, 0});
     const TileBytes parent = get(store, {1, 0, 0});
     waitFor(metrics_.aheadReads, 4);
-    const uint64_t asked = root->size() + parent->size() + 2 * 256;
-    EXPECT_LE(metrics_.cacheBytes, asked + kBudget / 4);
+    EXPECT_LE(metrics_.cacheBytes, 2 * kCost + budget / 4);
     EXPECT_NE(nullptr, store.find(tile({0, 0, 0})));
 }
 
@@ -168,7 +186,8 @@ TEST_F(Tiles, OfOneArchiveAreNeverTakenForThoseOfAnother) {
 }
 
 TEST_F(Tiles, AreRightForManyThreadsAtOnce) {
-    TileStore store({.budgetBytes = 10000, .readers = 3}, metrics_);
+    const uint64_t budget = 15 * kCost;
+    TileStore store({.budgetBytes = budget, .readers = 3}, metrics_);
     std::vector<std::thread> threads;
     std::atomic<int> wrong = 0;
     for (uint64_t seed = 1; seed <= 4; ++seed)
@@ -182,7 +201,7 @@ TEST_F(Tiles, AreRightForManyThreadsAtOnce) {
         });
     for (std::thread& thread : threads) thread.join();
     EXPECT_EQ(0, wrong);
-    EXPECT_LE(metrics_.cacheBytes, 10000);
+    EXPECT_LE(metrics_.cacheBytes, budget);
 }
 
 }  // namespace
