@@ -12,6 +12,14 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+/// Whether a text starts with a name, given in lower case, in whatever case.
+bool startsWithName(std::string_view text, std::string_view name) {
+    const auto same = [](char own, char other) {
+        return own == (other >= 'A' && other <= 'Z' ? other - 'A' + 'a' : other);
+    };
+    return text.size() >= name.size() && std::equal(name.begin(), name.end(), text.begin(), same);
+}
+
 /// A decimal number; one beyond 64 bits is the largest there is, since it lies behind the end of any file.
 std::optional<uint64_t> parseDigits(std::string_view text) {
     if (text.empty()) return {};
@@ -47,7 +55,7 @@ bool namesTag(std::string_view field, std::string_view tag, bool weakly) {
 std::variant<std::monostate, ByteRange, Unsatisfiable> parseRange(const std::optional<std::string>& field,
                                                                   uint64_t size) {
     constexpr std::string_view kUnit = "bytes=";
-    if (!field || !field->starts_with(kUnit)) return {};
+    if (!field || !startsWithName(*field, kUnit)) return {};
     const std::string_view spec = trimmed(std::string_view(*field).substr(kUnit.size()));
     const size_t dash = spec.find('-');
     if (dash == std::string_view::npos || spec.find(',') != std::string_view::npos) return {};

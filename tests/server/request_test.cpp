@@ -150,6 +150,7 @@ std::string rangeOf(const std::string& field, uint64_t size) {
 TEST(ParseRange, TakesOnePart) {
     EXPECT_EQ("0+1", rangeOf("bytes=0-0", 10));
     EXPECT_EQ("2+8", rangeOf("bytes=2-", 10));
+    EXPECT_EQ("2+8", rangeOf("Bytes=2-", 10)) << "names of units have no case (RFC 9110, 14.1)";
     EXPECT_EQ("2+8", rangeOf("bytes=2-99", 10));
     EXPECT_EQ("7+3", rangeOf("bytes=-3", 10));
     EXPECT_EQ("0+10", rangeOf("bytes=-99", 10));
