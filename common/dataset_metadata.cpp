@@ -64,6 +64,7 @@ class FieldReader {
         require(values[1] <= values[3], name, "west, south, east, north with south below north");
         return GroundRect{values[0], values[1], values[2], values[3]};
     }
+    [[nodiscard]] bool has(const std::string& name) const { return object_->find(name) != nullptr; }
     /// Whether the member is there and null.
     [[nodiscard]] bool isNull(const std::string& name) const {
         const Json* found = object_->find(name);
@@ -132,6 +133,8 @@ void readHeights(FieldReader& in, DatasetMetadata& metadata) {
     metadata.heightTiles = in.count("tiles");
     metadata.levelErrors = in.numbers("levelErrors", metadata.tiling.finestLevel + 1);
     for (const double error : metadata.levelErrors) in.require(error >= 0, "levelErrors", "without negative numbers");
+    metadata.errorBound = in.has("errorBound") ? in.number("errorBound") : metadata.levelErrors.back();
+    in.require(metadata.errorBound >= 0, "errorBound", "no less than 0");
 }
 
 void readImagery(FieldReader& in, DatasetMetadata& metadata) {
@@ -166,6 +169,7 @@ Json toJson(const DatasetMetadata& metadata) {
     heights.set("holeSamples", metadata.holeSamples);
     heights.set("tiles", metadata.heightTiles);
     heights.set("levelErrors", Json::Array(metadata.levelErrors.begin(), metadata.levelErrors.end()));
+    heights.set("errorBound", metadata.errorBound);
 
     Json imagery;
     imagery.set("finestLevel", metadata.imageryLevel ? Json(*metadata.imageryLevel) : Json());

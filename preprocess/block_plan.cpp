@@ -22,10 +22,14 @@ int64_t ceilShift(int64_t value, uint32_t shift) {
     return ((value - 1) >> shift) + 1;
 }
 
+int64_t tilesIn(const GridRect& tiles) {
+    return tiles.width * tiles.height;
+}
+
 /// The largest depth that keeps `jobs` threads busy with two blocks each, as deep as the pyramid allows.
 uint32_t busyDepth(const PyramidExtent& extent, int jobs) {
     uint32_t depth = std::min(kMaxDepth, extent.finestLevel);
-    while (depth > 1 && extent.tilesAt(extent.finestLevel - depth).count() < 2 * int64_t{jobs}) --depth;
+    while (depth > 1 && tilesIn(extent.coveredTilesAt(extent.finestLevel - depth)) < 2 * int64_t{jobs}) --depth;
     return depth;
 }
 
@@ -51,6 +55,16 @@ GridSize PyramidExtent::tilesAt(uint32_t level) const {
     return {(size.width + kTileCore - 1) / kTileCore, (size.height + kTileCore - 1) / kTileCore};
 }
 
+GridRect PyramidExtent::coveredTilesAt(uint32_t level) const {
+    const GridSize all = tilesAt(level);
+    if (!covered) return {0, 0, all.width, all.height};
+    const int64_t side = int64_t{kTileCore} << (finestLevel - level);
+    const int64_t left = covered->x / side;
+    const int64_t top = covered->y / side;
+    return {left, top, (covered->x + covered->width - 1) / side + 1 - left,
+            (covered->y + covered->height - 1) / side + 1 - top};
+}
+
 std::vector<BlockStage> planStages(uint32_t finestLevel, uint32_t depth) {
     if (finestLevel > 0) TERRAY_CHECK_OP(depth, >=, 1u);
     std::vector<BlockStage> stages = {{finestLevel, std::min(depth, finestLevel), true}};
@@ -62,11 +76,11 @@ std::vector<BlockStage> planStages(uint32_t finestLevel, uint32_t depth) {
 }
 
 std::vector<TileId> blocksOf(const PyramidExtent& extent, const BlockStage& stage) {
-    const GridSize tops = extent.tilesAt(stage.top());
+    const GridRect tops = extent.coveredTilesAt(stage.top());
     std::vector<TileId> blocks;
-    blocks.reserve(static_cast<size_t>(tops.count()));
-    for (int64_t y = 0; y < tops.height; ++y)
-        for (int64_t x = 0; x < tops.width; ++x)
+    blocks.reserve(static_cast<size_t>(tilesIn(tops)));
+    for (int64_t y = tops.y; y < tops.y + tops.height; ++y)
+        for (int64_t x = tops.x; x < tops.x + tops.width; ++x)
             blocks.push_back({stage.top(), static_cast<uint32_t>(x), static_cast<uint32_t>(y)});
     std::ranges::sort(blocks, {}, hilbertId);
     return blocks;

@@ -14,10 +14,14 @@ namespace terray {
 /// How far a pyramid reaches: samples and tiles of each of its levels.
 struct PyramidExtent {
     uint32_t finestLevel = 0;
-    GridSize samples;  ///< of the finest level
+    GridSize samples;                   ///< of the finest level
+    std::optional<GridRect> covered{};  ///< those of them that the source may have; none: all. Not empty
 
     [[nodiscard]] GridSize samplesAt(uint32_t level) const;
     [[nodiscard]] GridSize tilesAt(uint32_t level) const;
+    /// Columns and rows of the tiles that `covered` touches: no other is ever made. A photo of a house on the map of a
+    /// country has few of them, however fine it is.
+    [[nodiscard]] GridRect coveredTilesAt(uint32_t level) const;
 };
 
 /// A pass over the pyramid: it takes the samples of `bottom` and makes the tiles above, up to `top()`.

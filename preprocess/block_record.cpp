@@ -46,6 +46,7 @@ Bytes encodeBlockRecord(const BlockRecord& record) {
     out.write(record.holeSamples);
     out.write(record.minHeight);
     out.write(record.maxHeight);
+    out.write(record.finestStep);
     out.write(static_cast<uint32_t>(record.levelErrors.size()));
     for (const float error : record.levelErrors) out.write(error);
     out.write(static_cast<uint32_t>(record.tiles.size()));
@@ -74,6 +75,7 @@ Result<BlockRecord> decodeBlockRecord(ByteView bytes) {
     record.holeSamples = in.read<uint64_t>();
     record.minHeight = in.read<float>();
     record.maxHeight = in.read<float>();
+    record.finestStep = in.read<double>();
     const auto errors = in.read<uint32_t>();
     if (!in.ok() || errors > in.remaining() / kErrorBytes) return damaged;
     for (uint32_t i = 0; i < errors; ++i) record.levelErrors.push_back(in.read<float>());

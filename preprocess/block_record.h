@@ -34,6 +34,7 @@ struct BlockRecord {
     float minHeight = 0;            ///< metres, over all tiles; 0 without any
     float maxHeight = 0;
     std::vector<float> levelErrors;  ///< metres, greatest of each level, from the top level downwards
+    double finestStep = 0;           ///< metres, the widest code step of the source's own level; first stage only
 
     bool operator==(const BlockRecord&) const = default;
 

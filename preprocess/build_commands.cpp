@@ -1,114 +1,22 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <memory>
-#include <optional>
-#include <sstream>
 #include <string>
 
-#include "common/command_line.h"
-#include "common/json.h"
-#include "common/parse_number.h"
 #include "preprocess/block_plan.h"
-#include "preprocess/commands.h"
-#include "preprocess/dataset_builder.h"
+#include "preprocess/build_options.h"
 #include "preprocess/file_lists.h"
 #include "preprocess/filled_heights.h"
-#include "preprocess/output_directory.h"
-#include "preprocess/progress.h"
 #include "preprocess/raster_files.h"
+#include "preprocess/shifted_heights.h"
 
 namespace terray {
 namespace {
 
-constexpr int64_t kMaxJobs = 1024;
 constexpr int64_t kMaxSynthSize = int64_t{1} << 29;
-
-/// Options that build and synth share.
-struct SharedOptions {
-    std::string out;
-    int64_t jobs = machineJobs();
-    uint64_t memoryBytes = uint64_t{1} << 30;
-    bool force = false;
-    bool resume = false;
-    bool dryRun = false;
-    bool quiet = false;
-    bool jsonProgress = false;
-
-    void declare(CommandLine& line) {
-        line.option("--out", out, "DIR", "the dataset's directory, made by this run").required();
-        line.option("--jobs", jobs, "N", "threads; default: one for each core");
-        line.bytes("--memory", memoryBytes, "memory to stay within, whatever the size of the sources; default: 1G");
-        line.flag("--force", force, "replace the dataset that --out holds");
-        line.flag("--resume", resume, "go on with a build of --out that was stopped or killed, if there is one");
-        line.flag("--dry-run", dryRun, "only estimate tiles, bytes, disk, memory and time; writes nothing");
-        line.flag("--quiet", quiet, "print nothing but errors");
-        line.flag("--json-progress", jsonProgress, "print progress and result as one JSON object for each line");
-    }
-
-    /// Refuses what can be refused before any work.
-    void check() const {
-        if (quiet && jsonProgress)
-            throw Error(ExitCode::usage, "--quiet and --json-progress contradict each other; give one of them");
-        if (jobs < 1 || jobs > kMaxJobs)
-            throw Error(ExitCode::usage,
-                        "--jobs is " + std::to_string(jobs) + "; it must be from 1 to " + std::to_string(kMaxJobs));
-        if (memoryBytes < kMinMemoryBytes)
-            throw Error(ExitCode::usage, "--memory is " + std::to_string(memoryBytes) + " bytes; at least " +
-                                             std::to_string(kMinMemoryBytes >> 20) + " MiB are needed (--memory 256M)");
-        OutputDirectory::check(out, {.replace = force, .resume = resume});
-    }
-    [[nodiscard]] ProgressStyle style() const {
-        if (quiet) return ProgressStyle::silent;
-        return jsonProgress ? ProgressStyle::json : ProgressStyle::automatic;
-    }
-    [[nodiscard]] BuildRequest request(const std::string& optionsText, const std::atomic<bool>& stop,
-                                       BuildObserver& observer) const {
-        return {.out = out,
-                .replace = force,
-                .resume = resume,
-                .jobs = static_cast<int>(jobs),
-                .memoryBytes = memoryBytes,
-                .optionsText = optionsText,
-                .stop = &stop,
-                .observer = &observer};
-    }
-};
-
-/// The options that shape a result, as text for the dataset's metadata.
-class OptionsText {
-  public:
-    explicit OptionsText(std::string command) : text_(std::move(command)) {}
-
-    void add(const std::string& name, double value) { add(name, Json(value).dump(0)); }
-    void add(const std::string& name, const std::string& value) { text_ += " " + name + " " + value; }
-    void add(const std::string& flag) { text_ += " " + flag; }
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-  private:
-    std::string text_;
-};
 
 void requirePositive(const std::string& name, double value) {
     if (value > 0 && std::isfinite(value)) return;
     throw Error(ExitCode::usage, name + " is " + readableNumber(value) + "; it must be a number above 0");
-}
-
-/// "west,south,east,north" in metres.
-GroundRect parseBounds(const std::string& text) {
-    std::vector<double> numbers;
-    std::istringstream parts(text);
-    for (std::string part; std::getline(parts, part, ',');) {
-        if (const auto number = parseNumber(part)) numbers.push_back(*number);
-    }
-    const bool isWhole = numbers.size() == 4 && std::ranges::count(text, ',') == 3;
-    if (!isWhole || numbers[0] >= numbers[2] || numbers[1] >= numbers[3])
-        throw Error(ExitCode::usage,
-                    "--bbox is \"" + text +
-                        "\"; expected west,south,east,north in metres, west below east and south below "
-                        "north, such as 500000,5100000,520000,5120000");
-    return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 MosaicPriority parsePriority(const std::string& text) {
@@ -124,48 +32,13 @@ NodataPolicy parseNodataPolicy(const std::string& text) {
     throw Error(ExitCode::usage, "--fill-nodata is \"" + text + "\"; expected none, sea or interpolate");
 }
 
-/// Builds, and ends the display whether that works or not.
-BuildSummary buildWithDisplay(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
-    struct EndOfDisplay {
-        BuildObserver& observer;
-        ~EndOfDisplay() { observer.end(); }
-    } const endOfDisplay{*request.observer};
-    return buildDataset(heights, openPhoto, request);
-}
-
-void printEstimate(const BuildEstimate& estimate, const SharedOptions& shared) {
-    if (shared.style() == ProgressStyle::json) {
-        const Json json(Json::Object{{"event", "estimate"},
-                                     {"heightTiles", estimate.heightTiles},
-                                     {"imageryTiles", estimate.imageryTiles},
-                                     {"archiveBytes", estimate.archiveBytes},
-                                     {"diskBytes", estimate.diskBytes},
-                                     {"memoryBytes", estimate.memoryBytes},
-                                     {"seconds", estimate.seconds},
-                                     {"jobs", estimate.jobs}});
-        std::printf("%s\n", json.dump(0).c_str());
-    }
-    if (shared.style() == ProgressStyle::automatic) std::fputs(toText(estimate, shared.out).c_str(), stdout);
-}
-
-/// Builds, or only estimates, and says on stdout what came of it.
-void buildOrEstimate(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request,
-                     const SharedOptions& shared) {
-    if (!shared.dryRun) {
-        printSummary(buildWithDisplay(heights, openPhoto, request), shared.style());
-        return;
-    }
-    const BuildEstimate estimate = estimateDataset(heights, openPhoto, request);
-    printEstimate(estimate, shared);
-    requireSpace(estimate, shared.out);
-}
-
 /// What a user asked `build` for.
 struct BuildOptions {
     HeightSourceOptions heights;
     PhotoSourceOptions imagery;
     std::string bbox;
     std::string priority = "resolution";
+    std::string verticalCrs;
     std::string fillNodataText = "none";
     NodataPolicy nodataPolicy = NodataPolicy::holes;
     SharedOptions shared;
@@ -177,6 +50,9 @@ struct BuildOptions {
         line.list("--imagery", imagery.files, "FILE", "photos to drape over the heights, or @LIST");
         line.option("--crs", heights.crs, "AUTH:CODE",
                     "metric coordinate system of the dataset; default: the source's, or one chosen");
+        line.option("--vertical-crs", verticalCrs, "AUTH:CODE",
+                    "what heights are to be above, such as EPSG:5773, or ellipsoid: shifts them from the sources' own "
+                    "vertical system (PROJ)");
         line.option("--bbox", bbox, "W,S,E,N", "only this area, metres in the dataset's coordinate system");
         line.option(
             "--priority", priority, "HOW",
@@ -209,6 +85,7 @@ struct BuildOptions {
     [[nodiscard]] std::string text() const {
         OptionsText options("build");
         if (!heights.crs.empty()) options.add("--crs", heights.crs);
+        if (!verticalCrs.empty()) options.add("--vertical-crs", verticalCrs);
         if (!bbox.empty()) options.add("--bbox", bbox);
         if (heights.priority == MosaicPriority::order) options.add("--priority", priority);
         if (heights.spacing) options.add("--spacing", *heights.spacing);
@@ -216,6 +93,7 @@ struct BuildOptions {
         if (heights.heightOffset != 0) options.add("--height-offset", heights.heightOffset);
         if (heights.nodata) options.add("--nodata", *heights.nodata);
         if (nodataPolicy != NodataPolicy::holes) options.add("--fill-nodata", fillNodataText);
+        shared.describe(options);
         return options.text();
     }
 };
@@ -225,7 +103,8 @@ std::unique_ptr<HeightSource> openHeights(const HeightSourceOptions& options) {
     if (isImage && options.bounds)
         throw Error(ExitCode::georeference, "cannot take --bbox out of \"" + options.files.front() +
                                                 "\": a plain image does not say where it lies");
-    return isImage ? openImageHeights(options) : openGdalHeights(options);
+    const bool isForGdal = !isImage || isStoredInWideRows(options.files.front(), options.cacheBytes);
+    return isForGdal ? openGdalHeights(options) : openImageHeights(options);
 }
 
 }  // namespace
@@ -240,7 +119,9 @@ ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<b
     const std::unique_ptr<BuildObserver> observer = makeObserver(options.shared.style());
     options.heights.cacheBytes = cacheShare(options.shared.memoryBytes);
     options.heights.note = [&](const std::string& text) { observer->note(text); };
-    const std::unique_ptr<HeightSource> heights = fillNodata(openHeights(options.heights), options.nodataPolicy);
+    std::unique_ptr<HeightSource> source = openHeights(options.heights);
+    if (!options.verticalCrs.empty()) source = shiftHeights(std::move(source), options.verticalCrs);
+    const std::unique_ptr<HeightSource> heights = fillNodata(std::move(source), options.nodataPolicy);
     OpenPhoto openPhoto;
     options.imagery.cacheBytes = options.heights.cacheBytes;
     if (!options.imagery.files.empty())
@@ -277,6 +158,7 @@ ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<b
     text.add("--spacing", spacing);
     text.add("--seed", std::to_string(seed));
     if (imagery) text.add("--imagery");
+    shared.describe(text);
     const SyntheticTerrain terrain{.size = size, .spacing = spacing, .seed = static_cast<uint64_t>(seed)};
     const std::unique_ptr<HeightSource> heights = makeSyntheticHeights(terrain);
     OpenPhoto openPhoto;

@@ -41,15 +41,15 @@ struct Probes {
 
 /// Calls probe(tile) for tiles of the finest level in the middles of equal parts of the ground; it returns bytes.
 Probes probeTiles(const PyramidExtent& extent, const std::function<uint64_t(const TileId&)>& probe) {
-    const GridSize tiles = extent.tilesAt(extent.finestLevel);
+    const GridRect tiles = extent.coveredTilesAt(extent.finestLevel);
     const int64_t across = std::min(kProbesAcross, tiles.width);
     const int64_t down = std::min(kProbesAcross, tiles.height);
     Probes probes;
     const auto start = std::chrono::steady_clock::now();
     for (int64_t row = 0; row < down; ++row)
         for (int64_t column = 0; column < across; ++column) {
-            const int64_t x = (2 * column + 1) * tiles.width / (2 * across);
-            const int64_t y = (2 * row + 1) * tiles.height / (2 * down);
+            const int64_t x = tiles.x + (2 * column + 1) * tiles.width / (2 * across);
+            const int64_t y = tiles.y + (2 * row + 1) * tiles.height / (2 * down);
             probes.bytes += probe({extent.finestLevel, static_cast<uint32_t>(x), static_cast<uint32_t>(y)});
             ++probes.looked;
         }
@@ -81,16 +81,18 @@ uint64_t probeImagery(ColourReader& reader, const TileId& id) {
 /// Bytes of the level between the first two stages.
 uint64_t levelBytes(const PyramidExtent& extent, uint32_t depth, uint64_t sampleBytes) {
     if (depth >= extent.finestLevel) return 0;
-    const GridSize tiles = extent.tilesAt(extent.finestLevel - depth);
-    return static_cast<uint64_t>(tiles.count()) * kTileCore * kTileCore * sampleBytes;
+    const GridRect tiles = extent.coveredTilesAt(extent.finestLevel - depth);
+    return static_cast<uint64_t>(tiles.width * tiles.height) * kTileCore * kTileCore * sampleBytes;
 }
 
 }  // namespace
 
 uint64_t tilesOf(const PyramidExtent& extent) {
     uint64_t tiles = 0;
-    for (uint32_t level = 0; level <= extent.finestLevel; ++level)
-        tiles += static_cast<uint64_t>(extent.tilesAt(level).count());
+    for (uint32_t level = 0; level <= extent.finestLevel; ++level) {
+        const GridRect covered = extent.coveredTilesAt(level);
+        tiles += static_cast<uint64_t>(covered.width * covered.height);
+    }
     return tiles;
 }
 
@@ -109,19 +111,20 @@ BuildEstimate estimateBuild(const EstimateInput& input) {
     const uint64_t heightBytes = heightProbes.bytesOf(estimate.heightTiles);
     double seconds = heightProbes.secondsOf(estimate.heightTiles);
     // Tiles lie on the disk twice while they become an archive; before that there is the level between two stages.
-    const uint64_t heightStage = heightBytes + levelBytes(heights, input.work.heightDepth, kHeightSampleBytes);
+    const uint64_t heightStage =
+        heightBytes + input.heights.preparedBytes() + levelBytes(heights, input.work.heightDepth, kHeightSampleBytes);
     uint64_t imageryBytes = 0;
     uint64_t imageryStage = 0;
     if (input.photo != nullptr) {
-        const PyramidExtent imagery = imageryExtent(input.tiling, input.heights.info().size, input.photo->level());
+        const PyramidExtent imagery = imageryExtent(input.tiling, input.heights.info().size, *input.photo);
         estimate.imageryTiles = tilesOf(imagery);
         const std::unique_ptr<ColourReader> photoReader = input.photo->openReader();
         const Probes photoProbes =
             probeTiles(imagery, [&](const TileId& id) { return probeImagery(*photoReader, id); });
         imageryBytes = photoProbes.bytesOf(estimate.imageryTiles);
         seconds += photoProbes.secondsOf(estimate.imageryTiles);
-        imageryStage = heightBytes + imageryBytes +
-                       std::max(imageryBytes, levelBytes(imagery, input.work.imageryDepth, kTexelBytes));
+        const uint64_t level = levelBytes(imagery, input.work.imageryDepth, kTexelBytes);
+        imageryStage = heightBytes + imageryBytes + std::max(imageryBytes, level + input.photo->preparedBytes());
     }
     estimate.archiveBytes = heightBytes + imageryBytes;
     estimate.diskBytes = std::max({heightStage, imageryStage, 2 * heightBytes + imageryBytes});

@@ -9,7 +9,7 @@ namespace terray {
 namespace {
 
 /// Of the journal, all of it: changes when the heading or a block's record does.
-constexpr double kJournalVersion = 1;
+constexpr double kJournalVersion = 2;
 
 std::string fileText(const Json& source) {
     const Json* bytes = source.find("bytes");

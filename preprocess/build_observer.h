@@ -30,9 +30,10 @@ class SilentObserver final : public BuildObserver {
     void blockDone(uint64_t, uint64_t) override {}
 };
 
-/// Where the time of a build goes. Read, reduce, encode and write are sums over all threads.
-enum class BuildStep { read, reduce, encode, write };
-inline constexpr std::array<const char*, 4> kBuildStepNames = {"read", "reduce", "encode", "write"};
+/// Where the time of a build goes, summed over all threads. `warp` is reading through a resampling, which draws its
+/// samples from the files as it needs them, so that their reading is part of it.
+enum class BuildStep { read, warp, reduce, encode, write };
+inline constexpr std::array<const char*, 5> kBuildStepNames = {"read", "warp", "reduce", "encode", "write"};
 
 class BuildTimes {
   public:

@@ -51,7 +51,8 @@ DatasetMetadata describe(const HeightGridInfo& info, const Tiling& tiling, const
     metadata.crsName = info.crsName;
     metadata.lonLatBounds = info.lonLatBounds;
     metadata.verticalDatum = info.verticalDatum;
-    metadata.quantum = request.quantum.value_or(chooseQuantum(info));
+    metadata.quantum =
+        request.quantum.value_or(request.maxHeightError ? 2 * *request.maxHeightError : chooseQuantum(info));
     metadata.tool = "terray-preprocess " + std::string(buildInfo().version);
     metadata.options = request.optionsText;
     metadata.nodataPolicy = request.nodataPolicy;
@@ -86,7 +87,7 @@ struct Preparation {
 
     [[nodiscard]] std::optional<PyramidExtent> imagery() const {
         if (!photo) return {};
-        return imageryExtent(metadata.tiling, metadata.samples, photo->level());
+        return imageryExtent(metadata.tiling, metadata.samples, *photo);
     }
 
     [[nodiscard]] WorkPlan plan(const HeightSource& heights, const BuildRequest& request) const {
@@ -194,6 +195,7 @@ class DatasetBuild {
         known.minHeight = unbuilt.minHeight;
         known.maxHeight = unbuilt.maxHeight;
         known.levelErrors = unbuilt.levelErrors;
+        known.errorBound = unbuilt.errorBound;
         requireSame(makeHeading(known, 0, 0));
         observer_.note("there is nothing left to do: " + request_.out.string() + " is whole");
         summary_.metadata = whole;
@@ -211,13 +213,14 @@ class DatasetBuild {
                              .firstTileDone = [this] { output_.keep(true); }};
 
         PyramidBlocks heightBlocks(Pyramid::heights, heightExtent(heights_.info()), context);
-        const HeightTotals totals =
-            buildHeightPyramid(heights_, work.heightDepth, metadata.quantum, heightBlocks, context);
+        const HeightTotals totals = buildHeightPyramid(
+            heights_, work.heightDepth, {metadata.quantum, request_.maxHeightError}, heightBlocks, context);
         metadata.heightTiles = totals.tiles;
         metadata.holeSamples = totals.holeSamples;
         metadata.minHeight = totals.minHeight;
         metadata.maxHeight = totals.maxHeight;
         metadata.levelErrors = totals.levelErrors;
+        metadata.errorBound = totals.finestStep / 2;
         if (preparation_.photo) {
             PyramidBlocks imageryBlocks(Pyramid::imagery, *preparation_.imagery(), context);
             buildImagery(work, imageryBlocks, context);
@@ -229,8 +232,8 @@ class DatasetBuild {
     void buildImagery(const WorkPlan& work, PyramidBlocks& blocks, BuildContext& context) {
         DatasetMetadata& metadata = summary_.metadata;
         try {
-            metadata.imageryTiles = buildImageryPyramid(*preparation_.photo, metadata.tiling, metadata.samples,
-                                                        work.imageryDepth, blocks, context);
+            metadata.imageryTiles =
+                buildImageryPyramid(*preparation_.photo, *preparation_.imagery(), work.imageryDepth, blocks, context);
         } catch (const Error& error) {
             // No texel over the heights: that is so however often it is tried.
             if (error.code() == ExitCode::georeference) output_.keep(false);

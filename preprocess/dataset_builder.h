@@ -19,17 +19,19 @@ namespace terray {
 /// Opens the photo that goes over the heights once it is known where these lie.
 using OpenPhoto = std::function<std::unique_ptr<ColourSource>(const Tiling& tiling, const HeightGridInfo& heights)>;
 
-/// How a dataset is to be built. Only `optionsText`, `nodataPolicy` and `quantum` show in the result; all else changes
-/// time and memory.
+/// How a dataset is to be built. Only `optionsText`, `nodataPolicy`, `maxHeightError` and `quantum` show in the result;
+/// all else changes time and memory.
 struct BuildRequest {
     std::filesystem::path out;
     bool replace = false;  ///< an old dataset at `out` may go (--force)
     bool resume = false;   ///< an unfinished build beside `out` may be gone on with (--resume)
     int jobs = 1;
     uint64_t memoryBytes = uint64_t{1} << 30;
-    std::string optionsText;                  ///< DatasetMetadata::options
-    std::string nodataPolicy = "holes";       ///< DatasetMetadata::nodataPolicy
-    std::optional<double> quantum;            ///< metres; none: chosen by chooseQuantum()
+    std::string optionsText;             ///< DatasetMetadata::options
+    std::string nodataPolicy = "holes";  ///< DatasetMetadata::nodataPolicy
+    /// Metres that no finest height may be off by; the quantum is then twice that. None: half of each tile's code step.
+    std::optional<double> maxHeightError;
+    std::optional<double> quantum;            ///< metres; none: by maxHeightError, else chosen by chooseQuantum()
     std::optional<uint32_t> blockDepth;       ///< levels in a block instead of the planned ones
     const std::atomic<bool>* stop = nullptr;  ///< once true the build ends with Error(interrupted)
     BuildObserver* observer = nullptr;        ///< told of progress; nullptr: nobody

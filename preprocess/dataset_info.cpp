@@ -39,7 +39,9 @@ void printHeights(std::ostream& out, const DatasetInfo& info) {
     out << "heights    " << metadata.samples.width << " x " << metadata.samples.height << " samples, "
         << readableNumber(metadata.tiling.finestSpacing) << " m apart; " << readableNumber(metadata.minHeight) << " to "
         << readableNumber(metadata.maxHeight) << " m in steps of " << readableNumber(metadata.quantum) << " m; "
-        << metadata.holeSamples << " holes (datum " << metadata.verticalDatum << ")\n";
+        << metadata.holeSamples << " holes (datum " << metadata.verticalDatum << ")\n           off by at most "
+        << readableNumber(metadata.levelErrors.back()) << " m, measured; bound " << readableNumber(metadata.errorBound)
+        << " m\n";
     out << "           " << info.heights.tiles() << " tiles, file " << readableBytes(info.heights.fileBytes)
         << ", compressed " << readableNumber(info.heightCompression()) << " times from 16 bits\n";
     for (size_t level = 0; level < info.heights.levels.size(); ++level)

@@ -33,6 +33,7 @@ class FilledReader final : public HeightReader {
         else
             interpolate(window, inside, out);
     }
+    [[nodiscard]] bool resamples() const override { return reader_->resamples(); }
 
   private:
     /// Pieces that are read again with a margin: few enough cells that GDAL's own arrays stay small beside a block.
@@ -80,6 +81,8 @@ class FilledHeights final : public HeightSource {
     [[nodiscard]] std::unique_ptr<HeightReader> openReader() const override {
         return std::make_unique<FilledReader>(heights_->openReader(), info().size, policy_);
     }
+    [[nodiscard]] uint64_t preparedBytes() const override { return heights_->preparedBytes(); }
+    void prepare(const SourceWorkspace& workspace) const override { heights_->prepare(workspace); }
 
   private:
     std::unique_ptr<HeightSource> heights_;

@@ -9,6 +9,7 @@
 #include "preprocess/gdal_raster.h"
 #include "preprocess/raster_files.h"
 #include "preprocess/raster_groups.h"
+#include "preprocess/tiled_copies.h"
 
 namespace terray {
 
@@ -34,13 +35,16 @@ struct HeightUnits {
 struct HeightStack {
     std::vector<VirtualRaster> keptAlive;  ///< the rasters and all that they are derived from
     std::vector<std::string> rasters;      ///< names for GDAL; all have HeightGridInfo::size
+    TiledCopies copies;                    ///< of files that blocks cannot be read from at little cost
     HeightUnits units;
+    bool isWarped = false;
     std::string label;  ///< of the whole, in messages
 };
 
 class GdalHeightReader final : public HeightReader {
   public:
-    GdalHeightReader(const HeightStack& stack, GridSize size) : size_(size), units_(stack.units) {
+    GdalHeightReader(const HeightStack& stack, GridSize size)
+        : size_(size), units_(stack.units), isWarped_(stack.isWarped) {
         for (const std::string& raster : stack.rasters) rasters_.emplace_back(raster, stack.label);
     }
 
@@ -59,6 +63,7 @@ class GdalHeightReader final : public HeightReader {
         }
         convert(target);
     }
+    [[nodiscard]] bool resamples() const override { return isWarped_; }
 
   private:
     static void layOver(GridView<const float> upper, GridView<float> lower) {
@@ -77,6 +82,7 @@ class GdalHeightReader final : public HeightReader {
 
     GridSize size_;
     HeightUnits units_;
+    bool isWarped_;
     std::vector<gdal::RasterReader> rasters_;
 };
 
@@ -87,6 +93,8 @@ class GdalHeights final : public HeightSource {
     [[nodiscard]] std::unique_ptr<HeightReader> openReader() const override {
         return std::make_unique<GdalHeightReader>(stack_, info_.size);
     }
+    [[nodiscard]] uint64_t preparedBytes() const override { return stack_.copies.bytes(); }
+    void prepare(const SourceWorkspace& workspace) const override { stack_.copies.prepare(workspace); }
 
   private:
     HeightGridInfo info_;
@@ -96,7 +104,8 @@ class GdalHeights final : public HeightSource {
 /// Opens the sources step by step; each step adds to the stack and the info.
 class HeightOpener {
   public:
-    explicit HeightOpener(const HeightSourceOptions& options) : options_(options) {}
+    explicit HeightOpener(const HeightSourceOptions& options)
+        : options_(options), stack_{.copies = TiledCopies(options.cacheBytes)} {}
 
     std::unique_ptr<HeightSource> open() {
         TERRAY_CHECK(!options_.files.empty());
@@ -193,7 +202,8 @@ class HeightOpener {
         std::vector<std::string> arguments = placeArguments(raster);
         arguments.insert(arguments.end(), {"-b", "1", "-ot", "Float32"});
         if (options_.nodata) arguments.insert(arguments.end(), {"-a_nodata", exactText(*options_.nodata)});
-        return keep(gdal::translate(raster.name, arguments));
+        stack_.keptAlive.push_back(gdal::translate(raster.name, arguments));
+        return stack_.copies.nameOf(stack_.keptAlive.back(), raster);
     }
 
     /// UTM (or UPS) where the ground is; for ground so wide that its scale would be off by more than 1 % at the rim, an
@@ -228,6 +238,9 @@ class HeightOpener {
         info_.crsWkt = crs_.wkt;
         info_.crsName = crs_.name;
         info_.verticalDatum = own.verticalDatum;
+        const bool isOne = std::ranges::all_of(
+            rasters_, [&](const RasterFacts& raster) { return raster.crs.verticalWkt == own.verticalWkt; });
+        if (isOne) info_.verticalWkt = own.verticalWkt;
     }
 
     /// The grid of the only group when it fits as it is; else one that covers all, to which each group is warped.
@@ -251,6 +264,7 @@ class HeightOpener {
         note("heights are resampled (bilinear) to " + metres(grid.spacing) + " in " +
              (crs_.wkt.empty() ? "the unnamed plane" : crs_.name));
         info_.sourceStep = 0;
+        stack_.isWarped = true;
         setGrid(grid);
     }
 

@@ -6,6 +6,7 @@
 #include "preprocess/gdal_raster.h"
 #include "preprocess/raster_files.h"
 #include "preprocess/raster_groups.h"
+#include "preprocess/tiled_copies.h"
 
 namespace terray {
 
@@ -41,6 +42,8 @@ class GdalPhotoReader final : public ColourReader {
         }
     }
 
+    [[nodiscard]] bool resamples() const override { return true; }
+
   private:
     struct Layer {
         GridRect cells;
@@ -61,12 +64,13 @@ class GdalPhotoReader final : public ColourReader {
 class GdalPhotos final : public ColourSource {
   public:
     GdalPhotos(uint32_t level, GroundRect bounds, std::vector<SourceFile> files, std::vector<PhotoLayer> layers,
-               std::vector<VirtualRaster> keptAlive)
+               std::vector<VirtualRaster> keptAlive, TiledCopies copies)
         : level_(level),
           bounds_(bounds),
           files_(std::move(files)),
           layers_(std::move(layers)),
-          keptAlive_(std::move(keptAlive)) {}
+          keptAlive_(std::move(keptAlive)),
+          copies_(std::move(copies)) {}
 
     [[nodiscard]] uint32_t level() const override { return level_; }
     [[nodiscard]] GroundRect bounds() const override { return bounds_; }
@@ -74,6 +78,8 @@ class GdalPhotos final : public ColourSource {
     [[nodiscard]] std::unique_ptr<ColourReader> openReader() const override {
         return std::make_unique<GdalPhotoReader>(layers_);
     }
+    [[nodiscard]] uint64_t preparedBytes() const override { return copies_.bytes(); }
+    void prepare(const SourceWorkspace& workspace) const override { copies_.prepare(workspace); }
 
   private:
     uint32_t level_;
@@ -81,6 +87,7 @@ class GdalPhotos final : public ColourSource {
     std::vector<SourceFile> files_;
     std::vector<PhotoLayer> layers_;
     std::vector<VirtualRaster> keptAlive_;
+    TiledCopies copies_;
 };
 
 /// The heights that photos are laid over.
@@ -94,7 +101,7 @@ struct Ground {
 /// Opens the photos step by step.
 class PhotoOpener {
   public:
-    explicit PhotoOpener(Ground ground) : ground_(std::move(ground)) {}
+    PhotoOpener(Ground ground, uint64_t cacheBytes) : ground_(std::move(ground)), copies_(cacheBytes) {}
 
     std::unique_ptr<ColourSource> open(const PhotoSourceOptions& options) {
         TERRAY_CHECK(!options.files.empty());
@@ -107,7 +114,7 @@ class PhotoOpener {
         std::vector<SourceFile> sources;
         for (const RasterFacts& photo : photos_) sources.insert(sources.end(), photo.files.begin(), photo.files.end());
         return std::make_unique<GdalPhotos>(level_, *covered_, std::move(sources), std::move(layers_),
-                                            std::move(keptAlive_));
+                                            std::move(keptAlive_), std::move(copies_));
     }
 
   private:
@@ -149,7 +156,7 @@ class PhotoOpener {
         std::vector<std::string> place = placeArguments(photo);
         if (photo.hasPalette) {
             place.insert(place.end(), {"-expand", "rgba"});
-            return keep(gdal::translate(photo.name, place));
+            return tiled(gdal::translate(photo.name, place), photo);
         }
         std::string source = photo.name;
         std::vector<std::string> bands;
@@ -173,8 +180,13 @@ class PhotoOpener {
         }
         arguments.insert(arguments.end(), place.begin(), place.end());
         // A mask taken as a band gets its meaning only in a second step.
-        return keep(
-            gdal::translate(keep(gdal::translate(source, arguments)), {"-colorinterp", "red,green,blue,alpha"}));
+        return tiled(
+            gdal::translate(keep(gdal::translate(source, arguments)), {"-colorinterp", "red,green,blue,alpha"}), photo);
+    }
+
+    std::string tiled(VirtualRaster raster, const RasterFacts& photo) {
+        keptAlive_.push_back(std::move(raster));
+        return copies_.nameOf(keptAlive_.back(), photo);
     }
 
     /// Where the groups lie, what of the ground they cover, and the level that the finest of them asks for.
@@ -227,6 +239,7 @@ class PhotoOpener {
     uint32_t level_ = 0;
     std::vector<PhotoLayer> layers_;
     std::vector<VirtualRaster> keptAlive_;
+    TiledCopies copies_;
 };
 
 }  // namespace
@@ -237,7 +250,8 @@ std::unique_ptr<ColourSource> openGdalPhotos(const PhotoSourceOptions& options, 
     const SquareGrid heights{
         .west = tiling.west, .north = tiling.north, .spacing = tiling.finestSpacing, .size = samples};
     const std::string crsName = crsWkt.empty() ? "" : gdal::describeCrs(crsWkt).name;
-    return PhotoOpener({.tiling = tiling, .area = heights.bounds(), .crsWkt = crsWkt, .crsName = crsName})
+    return PhotoOpener({.tiling = tiling, .area = heights.bounds(), .crsWkt = crsWkt, .crsName = crsName},
+                       options.cacheBytes)
         .open(options);
 }
 

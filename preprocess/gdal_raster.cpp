@@ -17,63 +17,26 @@
 #include <ogr_spatialref.h>
 
 #include "common/check.h"
-#include "common/error.h"
+#include "preprocess/gdal_door.h"
 #include "preprocess/plain_image.h"
 #include "preprocess/raster_layout.h"
 
 namespace terray::gdal {
 
-namespace {
-
-/// Collects what GDAL says on this thread while it lives, so that nothing reaches the terminal.
-class Messages {
-  public:
-    Messages() { CPLPushErrorHandlerEx(&Messages::take, this); }
-    ~Messages() { CPLPopErrorHandler(); }
-    Messages(const Messages&) = delete;
-    Messages& operator=(const Messages&) = delete;
-
-    [[nodiscard]] bool failed() const { return !failures_.empty(); }
-    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-    /// All that it said, failures first, as half a sentence.
-    [[nodiscard]] std::string text() const {
-        std::string joined;
-        for (const auto* list : {&failures_, &warnings_})
-            for (const std::string& line : *list) joined += (joined.empty() ? "" : "; ") + line;
-        return joined.empty() ? "GDAL gives no reason" : "GDAL says: " + joined;
-    }
-
-  private:
-    static void CPL_STDCALL take(CPLErr kind, CPLErrorNum, const char* message) {
-        auto& self = *static_cast<Messages*>(CPLGetErrorHandlerUserData());
-        auto& list = kind == CE_Failure || kind == CE_Fatal ? self.failures_ : self.warnings_;
-        constexpr size_t kMaxKept = 8;  // a damaged file may say the same for each of a million blocks
-        const bool isNews = std::ranges::find(list, message) == list.end();
-        if (kind >= CE_Warning && isNews && list.size() < kMaxKept) list.emplace_back(message);
-    }
-    std::vector<std::string> failures_;
-    std::vector<std::string> warnings_;
-};
-
-/// Prepares the library once: drivers, silence, and sources of VRTs that threads do not share.
 void initialise() {
     static std::once_flag once;
     std::call_once(once, [] {
         CPLSetErrorHandler(CPLQuietErrorHandler);
         CPLSetConfigOption("VRT_SHARED_SOURCE", "NO");
+        CPLSetConfigOption("GTIFF_REPORT_COMPD_CS", "YES");  // what heights are above, also in files of GeoTIFF 1.0
         GDALAllRegister();
     });
 }
 
-[[noreturn]] void refuse(const std::string& message) {
-    throw Error(ExitCode::input, message);
-}
+namespace {
+
 [[noreturn]] void refusePlace(const std::string& message) {
     throw Error(ExitCode::georeference, message);
-}
-
-GDALDatasetUniquePtr open(const std::string& name) {
-    return GDALDatasetUniquePtr(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
 }
 
 /// As open(); the message of a failure says which of the usual reasons it has.
@@ -108,6 +71,16 @@ GDALDatasetUniquePtr openOnlyGrid(const std::string& file, GDALDataset& containe
     refuse("cannot read \"" + file + "\": it holds several grids. Name one of them instead of the file:" + list);
 }
 
+/// WKT of a compound system's vertical part.
+std::string verticalPartOf(const OGRSpatialReference& compound) {
+    const OGR_SRSNode* part = compound.GetAttrNode("VERT_CS");
+    char* wkt = nullptr;
+    std::string text;
+    if (part != nullptr && part->exportToWkt(&wkt) == OGRERR_NONE) text = wkt;
+    CPLFree(wkt);
+    return text;
+}
+
 Crs crsOf(const OGRSpatialReference* reference) {
     Crs crs;
     if (reference == nullptr || reference->IsEmpty()) return crs;
@@ -117,6 +90,7 @@ Crs crsOf(const OGRSpatialReference* reference) {
         const char* unit = nullptr;
         horizontal.GetTargetLinearUnits("VERT_CS", &unit);
         crs.verticalUnit = unit != nullptr ? unit : "";
+        crs.verticalWkt = verticalPartOf(horizontal);
         horizontal.StripVertical();
     }
     const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
@@ -167,11 +141,39 @@ std::vector<SourceFile> filesOf(GDALDataset& dataset) {
     return files;
 }
 
+/// The block in which a raster is stored; of a VRT, whose own blocks are none, the widest of its first few files'.
+GridSize storedBlock(GDALDataset& dataset) {
+    constexpr int kMostFiles = 4;  // parts of one product are stored alike
+    GridSize widest;
+    const auto look = [&](GDALDataset& raster) {
+        if (raster.GetRasterCount() == 0) return;
+        int width = 0;
+        int height = 0;
+        raster.GetRasterBand(1)->GetBlockSize(&width, &height);
+        if (width > widest.width) widest = {width, height};
+    };
+    if (dataset.GetDriver() == nullptr || !EQUAL(dataset.GetDriver()->GetDescription(), "VRT")) {
+        look(dataset);
+        return widest;
+    }
+    const CPLStringList files(dataset.GetFileList(), TRUE);
+    for (int i = 0, looked = 0; i < files.Count() && looked < kMostFiles; ++i) {
+        if (EQUAL(files[i], dataset.GetDescription())) continue;
+        const GDALDatasetUniquePtr part(GDALDataset::Open(files[i], GDAL_OF_RASTER));
+        if (!part) continue;
+        look(*part);
+        ++looked;
+    }
+    return widest;
+}
+
 void describeBands(GDALDataset& dataset, RasterFacts& facts) {
     GDALRasterBand& band = *dataset.GetRasterBand(1);
     const GDALDataType type = band.GetRasterDataType();
     const char* usedBits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
     facts.bands = dataset.GetRasterCount();
+    facts.block = storedBlock(dataset);
+    facts.pixelBytes = static_cast<uint64_t>(facts.bands) * static_cast<uint64_t>(GDALGetDataTypeSizeBytes(type));
     facts.isInteger = GDALDataTypeIsInteger(type) != 0;
     facts.bits = usedBits != nullptr ? std::atoi(usedBits) : GDALGetDataTypeSizeBits(type);
     facts.hasPalette = band.GetColorTable() != nullptr;
@@ -257,12 +259,6 @@ void finish(GDALDatasetH derived, const std::string& what, const Messages& messa
     if (!made || messages.failed()) refuse("cannot prepare " + what + ": " + messages.text());
 }
 
-GDALDatasetUniquePtr openSource(const std::string& name, const Messages& messages) {
-    GDALDatasetUniquePtr source = open(name);
-    if (!source) refuse("cannot open \"" + name + "\" again: " + messages.text());
-    return source;
-}
-
 }  // namespace
 
 void limitCache(uint64_t bytes) {
@@ -320,14 +316,18 @@ VirtualRaster::VirtualRaster()
       }) {}
 
 VirtualRaster translate(const std::string& source, const std::vector<std::string>& options) {
+    VirtualRaster result;
+    describeAnew(result, source, options);
+    return result;
+}
+
+void describeAnew(const VirtualRaster& target, const std::string& source, const std::vector<std::string>& options) {
     const Messages messages;
     const GDALDatasetUniquePtr input = openSource(source, messages);
     GDALTranslateOptions* parsed = GDALTranslateOptionsNew(argumentsOf(options, "VRT").List(), nullptr);
-    VirtualRaster result;
-    GDALDatasetH made = GDALTranslate(result.name().c_str(), GDALDataset::ToHandle(input.get()), parsed, nullptr);
+    GDALDatasetH made = GDALTranslate(target.name().c_str(), GDALDataset::ToHandle(input.get()), parsed, nullptr);
     GDALTranslateOptionsFree(parsed);
     finish(made, "\"" + source + "\"", messages);
-    return result;
 }
 
 VirtualRaster mosaic(const std::vector<std::string>& sources, const std::vector<std::string>& options) {
@@ -403,87 +403,6 @@ std::optional<GroundRect> lonLatBounds(const GroundRect& area, const std::string
                           std::isfinite(bounds.north);
     if (!isFinite) return {};
     return bounds;
-}
-
-void fillHoles(Grid<float>& heights, int distance) {
-    initialise();
-    const Messages messages;
-    const auto width = static_cast<int>(heights.width());
-    const auto height = static_cast<int>(heights.size().height);
-    GDALDriver& memory = *GetGDALDriverManager()->GetDriverByName("MEM");
-    const GDALDatasetUniquePtr raster(memory.Create("", width, height, 1, GDT_Float32, nullptr));
-    const GDALDatasetUniquePtr mask(memory.Create("", width, height, 1, GDT_Byte, nullptr));
-    std::vector<uint8_t> valid;
-    for (const float value : heights.cells()) valid.push_back(std::isnan(value) ? 0 : 255);
-    const std::array<const char*, 2> options{"TEMP_FILE_DRIVER=MEM", nullptr};
-    const auto pass = [&](GDALDataset& dataset, GDALRWFlag way, void* cells, GDALDataType type) {
-        return dataset.GetRasterBand(1)->RasterIO(way, 0, 0, width, height, cells, width, height, type, 0, 0, nullptr);
-    };
-    const bool isDone = raster && mask && pass(*raster, GF_Write, heights.cells().data(), GDT_Float32) == CE_None &&
-                        pass(*mask, GF_Write, valid.data(), GDT_Byte) == CE_None &&
-                        GDALFillNodata(raster->GetRasterBand(1), mask->GetRasterBand(1), distance, 0, 0,
-                                       const_cast<char**>(options.data()), nullptr, nullptr) == CE_None &&
-                        pass(*raster, GF_Read, heights.cells().data(), GDT_Float32) == CE_None;
-    if (!isDone) refuse("cannot fill the holes of the heights (" + messages.text() + ")");
-}
-
-struct RasterReader::State {
-    std::string name;
-    std::string label;
-    GDALDatasetUniquePtr dataset;
-
-    GDALDataset& opened(const Messages& messages) {
-        if (!dataset) dataset = open(name);
-        if (!dataset) refuse("cannot read \"" + label + "\": " + messages.text());
-        return *dataset;
-    }
-    /// Some drivers report damage without failing the call, so the messages count as well.
-    void check(CPLErr status, const GridRect& window, const Messages& messages) const {
-        if (status == CE_None && !messages.failed()) return;
-        refuse("cannot read " + std::to_string(window.width) + " x " + std::to_string(window.height) +
-               " pixels at column " + std::to_string(window.x) + ", row " + std::to_string(window.y) + " of \"" +
-               label + "\"; the file is cut short or damaged (" + messages.text() + ")");
-    }
-};
-
-RasterReader::RasterReader(std::string name, std::string label)
-    : state_(std::make_unique<State>(State{.name = std::move(name), .label = std::move(label)})) {}
-RasterReader::~RasterReader() = default;
-RasterReader::RasterReader(RasterReader&&) noexcept = default;
-
-void RasterReader::read(const GridRect& window, GridView<float> out) {
-    TERRAY_CHECK(out.size() == (GridSize{window.width, window.height}));
-    const Messages messages;
-    GDALRasterBand& band = *state_->opened(messages).GetRasterBand(1);
-    const auto x = static_cast<int>(window.x);
-    const auto y = static_cast<int>(window.y);
-    const auto width = static_cast<int>(window.width);
-    const auto height = static_cast<int>(window.height);
-    const GSpacing lineBytes = out.stride() * static_cast<GSpacing>(sizeof(float));
-    state_->check(band.RasterIO(GF_Read, x, y, width, height, out.data(), width, height, GDT_Float32, sizeof(float),
-                                lineBytes, nullptr),
-                  window, messages);
-    if ((band.GetMaskFlags() & GMF_PER_DATASET) == 0) return;  // NaN stands for nodata already
-    Grid<uint8_t> mask(out.size());
-    state_->check(band.GetMaskBand()->RasterIO(GF_Read, x, y, width, height, mask.view().data(), width, height,
-                                               GDT_Byte, 1, mask.width(), nullptr),
-                  window, messages);
-    for (int64_t row = 0; row < out.height(); ++row)
-        for (int64_t column = 0; column < out.width(); ++column)
-            if (mask.at(column, row) == 0) out.at(column, row) = kNoHeight;
-}
-
-void RasterReader::read(const GridRect& window, GridView<Rgba> out) {
-    TERRAY_CHECK(out.size() == (GridSize{window.width, window.height}));
-    const Messages messages;
-    GDALDataset& dataset = state_->opened(messages);
-    const auto width = static_cast<int>(window.width);
-    const auto height = static_cast<int>(window.height);
-    const GSpacing lineBytes = out.stride() * static_cast<GSpacing>(sizeof(Rgba));
-    state_->check(
-        dataset.RasterIO(GF_Read, static_cast<int>(window.x), static_cast<int>(window.y), width, height, out.data(),
-                         width, height, GDT_Byte, 4, nullptr, sizeof(Rgba), lineBytes, 1, nullptr),
-        window, messages);
 }
 
 }  // namespace terray::gdal

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +12,8 @@
 #include "preprocess/raster_layout.h"
 #include "preprocess/raster_source.h"
 
-// The door to GDAL: everything Terray asks of it, in plain values. Its source is the only file that includes GDAL.
+// The door to GDAL: everything Terray asks of it, in plain values. gdal_door.h and the sources gdal_raster.cpp,
+// gdal_reader.cpp and gdal_vertical.cpp are the only files that include GDAL.
 // Nothing that GDAL says reaches the terminal; it becomes part of an Error, or of RasterFacts::warnings.
 
 namespace terray::gdal {
@@ -24,8 +27,10 @@ struct RasterFacts {
     Crs crs;                                   ///< wkt is empty when the file names none
     std::vector<int> colourBands;              ///< numbers of red, green, blue; of one grey band three times
     int bands = 1;
-    bool isInteger = false;  ///< type of the first band, as are the following
-    int bits = 32;           ///< of a sample that count, such as 12 of 16
+    GridSize block;           ///< pixels that are stored, and so read, together: a tile, or a strip as wide as the file
+    uint64_t pixelBytes = 0;  ///< of all bands, unpacked
+    bool isInteger = false;   ///< type of the first band, as are the following
+    int bits = 32;            ///< of a sample that count, such as 12 of 16
     bool hasPalette = false;
     std::optional<std::array<double, 3>> colourNodata;  ///< of the colour bands, when each declares one
     std::optional<double> nodata;                       ///< in stored units
@@ -64,6 +69,8 @@ class VirtualRaster {
 
 /// One raster with other bands, types or labels. `options` are those of gdal_translate.
 [[nodiscard]] VirtualRaster translate(const std::string& source, const std::vector<std::string>& options);
+/// Describes another raster under the name of an earlier translate(); who has that name open does not notice.
+void describeAnew(const VirtualRaster& target, const std::string& source, const std::vector<std::string>& options);
 /// Rasters of one system and one grid side by side, later ones on top. `options` are those of gdalbuildvrt.
 [[nodiscard]] VirtualRaster mosaic(const std::vector<std::string>& sources, const std::vector<std::string>& options);
 /// A raster resampled to another system and grid. `options` are those of gdalwarp.
@@ -88,6 +95,15 @@ struct Footprint {
 /// by inverse distance (GDALFillNodata, no smoothing). A cell depends on those within `distance` along either axis
 /// alone.
 void fillHoles(Grid<float>& heights, int distance);
+
+/// Rows that copyInTiles() reads at a time: what limitCache() leaves room for, from 16 to 256.
+[[nodiscard]] int64_t rowsOfCopy(GridSize size);
+/// Copies a raster of one band of floats, or of four of bytes, with all that it says of itself, to a TIFF that is cut
+/// into small tiles and packed without loss. Reads it once, in whole rows from the top, and calls `rowsDone` after
+/// every rowsOfCopy() of them; what that throws ends the copy. Throws Error(input) when the raster cannot be read,
+/// Error(output) when the copy cannot be written.
+void copyInTiles(const std::string& raster, const std::string& label, const std::string& file,
+                 const std::function<void()>& rowsDone);
 
 /// Reads one raster. Opened by the first read, since GDAL ties some handles to the thread that opens them. For one
 /// thread.

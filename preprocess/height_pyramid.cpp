@@ -23,7 +23,7 @@ struct StoredLevel {
     Grid<HeightRecord> records;
 
     StoredLevel(const std::filesystem::path& path, GridSize tiles)
-        : samples(path, tiles, 3, kNoHeight), records(tiles) {}
+        : samples(path, {0, 0, tiles.width, tiles.height}, 3, kNoHeight), records(tiles) {}
 };
 
 /// A block in work.
@@ -50,9 +50,10 @@ struct Block {
 
 class HeightPyramid {
   public:
-    HeightPyramid(const HeightSource& source, double quantum, PyramidBlocks& blocks, BuildContext& context)
+    HeightPyramid(const HeightSource& source, const HeightPrecision& precision, PyramidBlocks& blocks,
+                  BuildContext& context)
         : source_(source),
-          quantum_(quantum),
+          precision_(precision),
           blocks_(blocks),
           context_(context),
           extent_(heightExtent(source.info())),
@@ -68,10 +69,14 @@ class HeightPyramid {
             if (stage.top() > 0)
                 above_ = std::make_unique<StoredLevel>(
                     context_.workDirectory / ("heights-" + std::to_string(stage.top())), extent_.tilesAt(stage.top()));
+            std::function<void()> begin;
+            if (stage.first) begin = [&] { prepareSource(); };
             blocks_.runStage(stage,
-                             {.build = [&](BlockRecord& record, int worker) { buildBlock(stage, record, worker); },
+                             {.begin = begin,
+                              .build = [&](BlockRecord& record, int worker) { buildBlock(stage, record, worker); },
                               .take = [&](const BlockRecord& record) { take(record); },
                               .level = above_ ? &above_->samples.file() : nullptr});
+            if (stage.first) releaseSource();
             if (below_) below_->samples.file().discard();
             std::swap(below_, above_);
         }
@@ -81,6 +86,15 @@ class HeightPyramid {
     }
 
   private:
+    void prepareSource() {
+        const StepTimer timer(context_.times, BuildStep::read);
+        blocks_.prepare(source_);
+    }
+    void releaseSource() {
+        for (auto& reader : readers_) reader.reset();
+        blocks_.release();
+    }
+
     void buildBlock(const BlockStage& stage, BlockRecord& record, int worker) {
         Block block{.stage = stage, .record = record, .finest = {}, .levels = {}, .records = {}};
         record.levelErrors.resize(stage.depth + 1, 0);
@@ -102,9 +116,9 @@ class HeightPyramid {
         const GridRect window = block.window();
         block.finest = Grid<float>({window.width, window.height});
         {
-            const StepTimer timer(context_.times, BuildStep::read);
             std::unique_ptr<HeightReader>& reader = readers_[static_cast<size_t>(worker)];
             if (!reader) reader = source_.openReader();
+            const StepTimer timer(context_.times, reader->resamples() ? BuildStep::warp : BuildStep::read);
             reader->read(window, block.finest.view());
         }
         const StepTimer timer(context_.times, BuildStep::reduce);
@@ -210,7 +224,7 @@ class HeightPyramid {
         HeightTileInput input{.id = block.tile(above, column, row),
                               .mean = level.mean.window(grown(core, kHeightApron)),
                               .core = level.window(core),
-                              .quantum = quantum_};
+                              .quantum = precision_.quantum};
         if (above > 0)
             for (uint32_t quadrant = 0; quadrant < 4; ++quadrant)
                 input.children[quadrant] =
@@ -222,12 +236,27 @@ class HeightPyramid {
             const StepTimer timer(context_.times, BuildStep::encode);
             const std::optional<HeightTile> tile = makeHeightTile(input);
             if (!tile) return {};
+            if (input.id.level == extent_.finestLevel) keepPrecision(*tile, block.record);
             record = tile->record;
             payload = encodeHeightTile(*tile);
         }
         measure(block, record, input.id.level);
         blocks_.store(block.record, input.id, payload);
         return record;
+    }
+
+    /// Holds a finest tile against the error that was asked for, and notes the width of its steps.
+    void keepPrecision(const HeightTile& tile, BlockRecord& record) const {
+        const double step = tile.encoding.metresPerCode();
+        record.finestStep = std::max(record.finestStep, step);
+        constexpr double kRounding = 1 + 1e-9;  // of twice the error, which is the quantum
+        if (!precision_.maxError || step / 2 <= *precision_.maxError * kRounding) return;
+        throw Error(ExitCode::input, "the heights of tile " + toString(tile.id) + " reach from " +
+                                         std::to_string(tile.record.minHeight) + " to " +
+                                         std::to_string(tile.record.maxHeight) + " m: its 16-bit codes come within " +
+                                         std::to_string(step / 2) + " m of each, not within the " +
+                                         std::to_string(*precision_.maxError) +
+                                         " m of --max-height-error; allow as much, or leave the option out");
     }
 
     /// Adds a tile to what its block says of all of its tiles.
@@ -255,6 +284,7 @@ class HeightPyramid {
         totals_.holeSamples += record.holeSamples;
         if (record.tiles.empty()) return;
         totals_.tiles += record.tiles.size();
+        totals_.finestStep = std::max(totals_.finestStep, record.finestStep);
         totals_.minHeight = std::min(totals_.minHeight, static_cast<double>(record.minHeight));
         totals_.maxHeight = std::max(totals_.maxHeight, static_cast<double>(record.maxHeight));
         for (size_t i = 0; i < record.levelErrors.size(); ++i) {
@@ -267,7 +297,7 @@ class HeightPyramid {
     }
 
     const HeightSource& source_;
-    double quantum_;
+    HeightPrecision precision_;
     PyramidBlocks& blocks_;
     BuildContext& context_;
     PyramidExtent extent_;
@@ -283,9 +313,9 @@ PyramidExtent heightExtent(const HeightGridInfo& info) {
     return {Tiling::levelFor(std::max(info.size.width, info.size.height)), info.size};
 }
 
-HeightTotals buildHeightPyramid(const HeightSource& source, uint32_t depth, double quantum, PyramidBlocks& blocks,
-                                BuildContext& context) {
-    return HeightPyramid(source, quantum, blocks, context).build(depth);
+HeightTotals buildHeightPyramid(const HeightSource& source, uint32_t depth, const HeightPrecision& precision,
+                                PyramidBlocks& blocks, BuildContext& context) {
+    return HeightPyramid(source, precision, blocks, context).build(depth);
 }
 
 }  // namespace terray

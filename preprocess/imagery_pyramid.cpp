@@ -80,11 +80,11 @@ class RootMips {
 
 class ImageryPyramid {
   public:
-    ImageryPyramid(const ColourSource& source, const PyramidExtent& extent, const GridRect& photo,
-                   PyramidBlocks& blocks, BuildContext& context)
+    ImageryPyramid(const ColourSource& source, const PyramidExtent& extent, PyramidBlocks& blocks,
+                   BuildContext& context)
         : source_(source),
           extent_(extent),
-          photo_(photo),
+          photo_(*extent.covered),
           blocks_(blocks),
           context_(context),
           readers_(static_cast<size_t>(context.jobs)) {}
@@ -95,11 +95,15 @@ class ImageryPyramid {
             if (stage.top() > 0)
                 above_ =
                     std::make_unique<LevelStore>(context_.workDirectory / ("imagery-" + std::to_string(stage.top())),
-                                                 extent_.tilesAt(stage.top()), 4, 0.0f);
+                                                 extent_.coveredTilesAt(stage.top()), 4, 0.0f);
+            std::function<void()> begin;
+            if (stage.first) begin = [&] { prepareSource(); };
             blocks_.runStage(stage,
-                             {.build = [&](BlockRecord& record, int worker) { buildBlock(stage, record, worker); },
+                             {.begin = begin,
+                              .build = [&](BlockRecord& record, int worker) { buildBlock(stage, record, worker); },
                               .take = [&](const BlockRecord& record) { take(record); },
                               .level = above_ ? &above_->file() : nullptr});
+            if (stage.first) releaseSource();
             if (below_) below_->file().discard();
             std::swap(below_, above_);
         }
@@ -111,6 +115,15 @@ class ImageryPyramid {
     }
 
   private:
+    void prepareSource() {
+        const StepTimer timer(context_.times, BuildStep::read);
+        blocks_.prepare(source_);
+    }
+    void releaseSource() {
+        for (auto& reader : readers_) reader.reset();
+        blocks_.release();
+    }
+
     void buildBlock(const BlockStage& stage, BlockRecord& record, int worker) {
         Block block{.stage = stage, .record = record, .finest = {}, .levels = {}, .exists = {}};
         const bool hasPhoto = stage.first ? readSource(block, worker) : readBelow(block);
@@ -130,9 +143,9 @@ class ImageryPyramid {
         const GridRect inside = intersection(window, photo_);
         if (intersection(grown(window, -margin), photo_).empty()) return false;
         block.finest = Grid<Rgba>({window.width, window.height}, Rgba{});
-        const StepTimer timer(context_.times, BuildStep::read);
         std::unique_ptr<ColourReader>& reader = readers_[static_cast<size_t>(worker)];
         if (!reader) reader = source_.openReader();
+        const StepTimer timer(context_.times, reader->resamples() ? BuildStep::warp : BuildStep::read);
         reader->read(inside, block.finest.view().window(
                                  {inside.x - window.x, inside.y - window.y, inside.width, inside.height}));
         return anyPhoto(
@@ -165,10 +178,7 @@ class ImageryPyramid {
         return true;
     }
 
-    [[nodiscard]] bool existsBelow(const TileId& id) const {
-        const GridSize tiles = extent_.tilesAt(id.level);
-        return id.x < tiles.width && id.y < tiles.height && below_->has(id.x, id.y);
-    }
+    [[nodiscard]] bool existsBelow(const TileId& id) const { return below_->has(id.x, id.y); }
 
     void halveUpwards(Block& block) {
         const StepTimer timer(context_.times, BuildStep::reduce);
@@ -254,25 +264,25 @@ class ImageryPyramid {
     std::unique_ptr<LevelStore> above_;                   ///< written by it
 };
 
-/// Texels of the finest imagery level that the source may cover, one more on each side for what lies between texels.
-GridRect photoTexels(const ColourSource& source, const Tiling& tiling, const PyramidExtent& extent) {
-    return intersection(grown(imageryCells(source.bounds(), tiling, extent.finestLevel), 1),
-                        {0, 0, extent.samples.width, extent.samples.height});
+GridSize texelsOver(const Tiling& tiling, GridSize samples, uint32_t level) {
+    if (level < tiling.finestLevel) return PyramidExtent{tiling.finestLevel, samples}.samplesAt(level);
+    const uint32_t finer = level - tiling.finestLevel;
+    return {samples.width << finer, samples.height << finer};
 }
 
 }  // namespace
 
-PyramidExtent imageryExtent(const Tiling& tiling, GridSize samples, uint32_t imageryLevel) {
-    if (imageryLevel < tiling.finestLevel)
-        return {imageryLevel, PyramidExtent{tiling.finestLevel, samples}.samplesAt(imageryLevel)};
-    const uint32_t finer = imageryLevel - tiling.finestLevel;
-    return {imageryLevel, {samples.width << finer, samples.height << finer}};
+PyramidExtent imageryExtent(const Tiling& tiling, GridSize samples, const ColourSource& photo) {
+    PyramidExtent extent{.finestLevel = photo.level(), .samples = texelsOver(tiling, samples, photo.level())};
+    // One more texel on each side, for what lies between texels.
+    extent.covered = intersection(grown(imageryCells(photo.bounds(), tiling, extent.finestLevel), 1),
+                                  {0, 0, extent.samples.width, extent.samples.height});
+    return extent;
 }
 
-uint64_t buildImageryPyramid(const ColourSource& source, const Tiling& tiling, GridSize samples, uint32_t depth,
+uint64_t buildImageryPyramid(const ColourSource& source, const PyramidExtent& extent, uint32_t depth,
                              PyramidBlocks& blocks, BuildContext& context) {
-    const PyramidExtent extent = imageryExtent(tiling, samples, source.level());
-    return ImageryPyramid(source, extent, photoTexels(source, tiling, extent), blocks, context).build(depth);
+    return ImageryPyramid(source, extent, blocks, context).build(depth);
 }
 
 }  // namespace terray

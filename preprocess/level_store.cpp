@@ -6,8 +6,8 @@
 
 namespace terray {
 
-LevelStore::LevelStore(const std::filesystem::path& path, GridSize tiles, int planes, float fill)
-    : tiles_(tiles), planes_(planes), fill_(fill), file_(path), written_(tiles, 0) {}
+LevelStore::LevelStore(const std::filesystem::path& path, const GridRect& tiles, int planes, float fill)
+    : tiles_(tiles), planes_(planes), fill_(fill), file_(path), written_({tiles.width, tiles.height}, 0) {}
 
 void LevelStore::write(int64_t tileX, int64_t tileY, std::span<const GridView<const float>> planes) {
     TERRAY_CHECK_OP(static_cast<int>(planes.size()), ==, planes_);
@@ -23,13 +23,15 @@ void LevelStore::write(int64_t tileX, int64_t tileY, std::span<const GridView<co
 }
 
 bool LevelStore::has(int64_t tileX, int64_t tileY) const {
-    return written_.at(tileX, tileY) != 0;
+    if (intersection({tileX, tileY, 1, 1}, tiles_).empty()) return false;
+    return written_.at(tileX - tiles_.x, tileY - tiles_.y) != 0;
 }
 
 void LevelStore::read(const GridRect& window, int plane, GridView<float> out) const {
     TERRAY_CHECK(out.size() == GridSize(window.width, window.height));
     for (int64_t y = 0; y < out.height(); ++y) std::ranges::fill(out.row(y), fill_);
-    const GridRect inside = intersection(window, {0, 0, tiles_.width * kTileCore, tiles_.height * kTileCore});
+    const GridRect inside = intersection(
+        window, {tiles_.x * kTileCore, tiles_.y * kTileCore, tiles_.width * kTileCore, tiles_.height * kTileCore});
     if (inside.empty()) return;
 
     for (int64_t tileY = inside.y / kTileCore; tileY * kTileCore < inside.y + inside.height; ++tileY) {
@@ -50,7 +52,7 @@ void LevelStore::read(const GridRect& window, int plane, GridView<float> out) co
 
 uint64_t LevelStore::rowOffset(int64_t tileX, int64_t tileY, int plane, int64_t row) const {
     // Tiles row by row, in a tile plane by plane, in a plane row by row: a file layout, not an index into a grid.
-    const int64_t tile = tileY * tiles_.width + tileX;
+    const int64_t tile = (tileY - tiles_.y) * tiles_.width + tileX - tiles_.x;
     return static_cast<uint64_t>(((tile * planes_ + plane) * kTileCore + row) * kTileCore) * sizeof(float);
 }
 

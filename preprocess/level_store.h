@@ -18,13 +18,14 @@ namespace terray {
 class LevelStore {
   public:
     /// Opens the file as an earlier run left it, or creates it.
-    /// @param tiles  columns and rows of tiles that the level has
-    LevelStore(const std::filesystem::path& path, GridSize tiles, int planes, float fill);
+    /// @param tiles  columns and rows of the level's tiles that may be written
+    LevelStore(const std::filesystem::path& path, const GridRect& tiles, int planes, float fill);
 
     /// Stores a tile's core: one kTileCore x kTileCore view for each plane.
     void write(int64_t tileX, int64_t tileY, std::span<const GridView<const float>> planes);
     /// Counts a tile as there: once it is written, in this run or an earlier one.
-    void take(int64_t tileX, int64_t tileY) { written_.at(tileX, tileY) = 1; }
+    void take(int64_t tileX, int64_t tileY) { written_.at(tileX - tiles_.x, tileY - tiles_.y) = 1; }
+    /// Of any tile, also one that may not be written.
     [[nodiscard]] bool has(int64_t tileX, int64_t tileY) const;
     /// One plane of `window`, in samples of the level; beyond the level and in tiles not written: `fill`.
     void read(const GridRect& window, int plane, GridView<float> out) const;
@@ -33,7 +34,7 @@ class LevelStore {
   private:
     [[nodiscard]] uint64_t rowOffset(int64_t tileX, int64_t tileY, int plane, int64_t row) const;
 
-    GridSize tiles_;
+    GridRect tiles_;
     int planes_;
     float fill_;
     WorkFile file_;

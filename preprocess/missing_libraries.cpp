@@ -26,6 +26,15 @@ std::unique_ptr<ColourSource> openGdalPhotos(const PhotoSourceOptions& options, 
                                              const std::string&) {
     refuse("read \"" + options.files.front() + "\"", "GDAL", "TERRAY_WITH_GDAL");
 }
+bool isStoredInWideRows(const std::string&, uint64_t) {
+    return false;
+}
+std::unique_ptr<VerticalShift> openVerticalShift(const std::string&, const std::string&, const std::string&) {
+    refuse("shift heights", "GDAL", "TERRAY_WITH_GDAL");
+}
+std::string verticalName(const std::string&) {
+    refuse("shift heights", "GDAL", "TERRAY_WITH_GDAL");
+}
 void interpolateHoles(Grid<float>&, int) {
     refuse("interpolate holes", "GDAL", "TERRAY_WITH_GDAL");
 }

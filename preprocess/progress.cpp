@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <numeric>
 #include <string>
 
 #include <unistd.h>
@@ -145,6 +146,15 @@ void printJsonSummary(const BuildSummary& summary) {
                                      {"levelErrors", errors}});
 }
 
+/// A table of the steps, so that a user sees what bounds the run.
+void printSteps(const BuildSummary& summary) {
+    const double all = std::accumulate(summary.stepSeconds.begin(), summary.stepSeconds.end(), 0.0);
+    std::printf("time: %.2f s on %d jobs; of all threads:\n", summary.seconds, summary.jobs);
+    for (size_t step = 0; step < kBuildStepNames.size(); ++step)
+        std::printf("  %-7s %9.2f s %4.0f %%\n", kBuildStepNames[step], summary.stepSeconds[step],
+                    100 * summary.stepSeconds[step] / std::max(all, 1e-9));
+}
+
 void printTextSummary(const BuildSummary& summary) {
     const DatasetMetadata& metadata = summary.metadata;
     std::printf("heights: %llu tiles, %s; %lld x %lld samples of %s m, %s to %s m, %llu holes\n",
@@ -156,10 +166,10 @@ void printTextSummary(const BuildSummary& summary) {
         std::printf("imagery: %llu tiles, %s; texels of %s m\n", static_cast<unsigned long long>(metadata.imageryTiles),
                     readableBytes(summary.imageryBytes).c_str(),
                     readableNumber(metadata.tiling.spacing(*metadata.imageryLevel)).c_str());
-    std::printf("time: %.2f s on %d jobs; in all threads", summary.seconds, summary.jobs);
-    for (size_t step = 0; step < kBuildStepNames.size(); ++step)
-        std::printf("%s %s %.2f s", step == 0 ? "" : ",", kBuildStepNames[step], summary.stepSeconds[step]);
-    std::printf("\nerror by level, m:");
+    std::printf("heights are off by at most %s m, measured; bound %s m\n",
+                readableNumber(metadata.levelErrors.back()).c_str(), readableNumber(metadata.errorBound).c_str());
+    printSteps(summary);
+    std::printf("error by level, m:");
     for (const double error : metadata.levelErrors) std::printf(" %s", readableNumber(error).c_str());
     std::printf("\n");
 }

@@ -49,6 +49,7 @@ void PyramidBlocks::runStage(const BlockStage& stage, const StageWork& work) {
     const std::vector<TileId> blocks = blocksOf(extent_, stage);
     Stage& running = stages_.emplace_back(Stage{stage, std::vector<uint64_t>(blocks.size(), 0)});
     const uint64_t done = takeUp(blocks, running, work);
+    if (work.begin && done < blocks.size()) work.begin();
     context_.observer.stageBegins(stageName(pyramid_, stage), blocks.size(), done);
 
     std::vector<WorkFile*> data = {&spill_};
@@ -70,6 +71,23 @@ void PyramidBlocks::runStage(const BlockStage& stage, const StageWork& work) {
     });
     // The next stage takes away what this one has read, so that all of this one must be safe.
     context_.journal.sync();
+}
+
+std::filesystem::path PyramidBlocks::workspaceDirectory() const {
+    return context_.workDirectory / (std::string(nameOf(pyramid_)) + "-sources");
+}
+
+SourceWorkspace PyramidBlocks::workspace() const {
+    std::filesystem::create_directories(workspaceDirectory());
+    return {.directory = workspaceDirectory(),
+            .stop = context_.stop,
+            .partBegins = [this](const std::string& name,
+                                 uint64_t steps) { context_.observer.stageBegins(name, steps, 0); },
+            .stepDone = [this] { context_.observer.blockDone(context_.tiles, context_.bytes); }};
+}
+
+void PyramidBlocks::release() {
+    std::filesystem::remove_all(workspaceDirectory());
 }
 
 uint64_t PyramidBlocks::takeUp(const std::vector<TileId>& blocks, Stage& stage, const StageWork& work) {

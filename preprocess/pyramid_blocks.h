@@ -12,6 +12,7 @@
 #include "preprocess/block_plan.h"
 #include "preprocess/block_record.h"
 #include "preprocess/build_context.h"
+#include "preprocess/raster_source.h"
 #include "preprocess/work_file.h"
 
 namespace terray {
@@ -29,6 +30,8 @@ class PyramidBlocks {
 
     /// What a stage does.
     struct StageWork {
+        /// Called once before the first build(), not when all blocks were done by an earlier run. May be empty.
+        std::function<void()> begin = {};
         /// Makes a block; the record's tiles are those that it stored. Called on several threads.
         std::function<void(BlockRecord& record, int worker)> build;
         /// Takes the record of a block that is done, also of an earlier run; one call at a time.
@@ -38,6 +41,13 @@ class PyramidBlocks {
     };
     /// Runs every block of a stage that is not done yet. Throws what build() throws, Error(interrupted), Error(output).
     void runStage(const BlockStage& stage, const StageWork& work);
+
+    /// Makes a source ready for reading (HeightSource::prepare and the photo's), in a directory that release() removes.
+    template <class Source>
+    void prepare(const Source& source) {
+        source.prepare(workspace());
+    }
+    void release();
 
     /// Adds a finished tile to a block in work. Thread-safe for different records.
     void store(BlockRecord& record, const TileId& id, ByteView payload);
@@ -60,6 +70,8 @@ class PyramidBlocks {
     /// Takes what earlier runs did of a stage. @return blocks
     uint64_t takeUp(const std::vector<TileId>& blocks, Stage& stage, const StageWork& work);
     void count(const BlockRecord& record);
+    [[nodiscard]] std::filesystem::path workspaceDirectory() const;
+    [[nodiscard]] SourceWorkspace workspace() const;
 
     Pyramid pyramid_;
     PyramidExtent extent_;

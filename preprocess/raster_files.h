@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "preprocess/raster_layout.h"
 #include "preprocess/raster_source.h"
 
 namespace terray {
@@ -26,11 +27,32 @@ namespace terray {
 /// Whether `file` is to be read as a plain image: OpenImageIO knows it and GDAL finds no georeference in it.
 [[nodiscard]] bool isPlainImage(const std::string& file);
 
+/// Whether GDAL opens `file` and finds it stored in rows so wide, and so many, that reading blocks out of it would read
+/// it again and again: openGdalHeights() copies such a file once. False without GDAL.
+[[nodiscard]] bool isStoredInWideRows(const std::string& file, uint64_t cacheBytes);
+
 /// Photos through GDAL, mosaicked (the finest on top, or as `priority` says) and warped to the imagery grid of
 /// `tiling`. Grey, RGB, RGBA, paletted, 8 or 16 bits. A photo without georeference is stretched over the ground of the
 /// heights when these are a plain image too. Throws Error(georeference) when no photo overlaps the heights.
 [[nodiscard]] std::unique_ptr<ColourSource> openGdalPhotos(const PhotoSourceOptions& options, const Tiling& tiling,
                                                            GridSize samples, const std::string& crsWkt);
+
+/// What to add to heights to measure them in another vertical system, from place to place, by PROJ. For one thread.
+class VerticalShift {
+  public:
+    virtual ~VerticalShift() = default;
+    /// Metres to add at places of the dataset's plane. Throws Error(georeference) where it is not defined.
+    [[nodiscard]] virtual std::vector<double> at(const std::vector<PixelPlace>& places) = 0;
+};
+/// @param crsWkt   of the dataset's plane
+/// @param fromWkt  the vertical system that heights are in now
+/// @param to       "EPSG:5773" and the like, or "ellipsoid" for heights above the plane's own ellipsoid
+/// Throws Error(georeference) for a system that is unknown or not vertical, and when PROJ lacks a grid that lies
+/// between the two: it is never left out in silence.
+[[nodiscard]] std::unique_ptr<VerticalShift> openVerticalShift(const std::string& crsWkt, const std::string& fromWkt,
+                                                               const std::string& to);
+/// The name of a vertical system as openVerticalShift() takes it.
+[[nodiscard]] std::string verticalName(const std::string& crs);
 
 /// Gives each hole (NaN) up to `distance` cells from a height one that GDAL interpolates from the heights around it. A
 /// cell depends on those within `distance` along either axis alone.

@@ -23,6 +23,7 @@ struct Crs {
     std::string name;  ///< "EPSG:32613", or the system's own name
     std::string verticalDatum = "unknown";
     std::string verticalUnit;  ///< of a compound system, as it names it
+    std::string verticalWkt;   ///< of a compound system's vertical part
     bool isProjected = false;  ///< a plane: neither degrees nor geocentric
     double metresPerUnit = 1;  ///< of a plane's coordinates
 

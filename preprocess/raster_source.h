@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -29,10 +31,19 @@ struct HeightGridInfo {
     std::string crsName;                     ///< "EPSG:32613", or the system's name
     std::optional<GroundRect> lonLatBounds;  ///< degrees
     std::string verticalDatum = "unknown";
+    std::string verticalWkt;  ///< of the system that heights are measured in; empty when the sources do not say
     /// Greatest step, metres, between which values of the source can lie: 1 for integers in metres, 0 when unknown
     /// (floats).
     double sourceStep = 0;
     std::vector<SourceFile> files;
+};
+
+/// What a source may use while it makes itself ready for a build.
+struct SourceWorkspace {
+    std::filesystem::path directory;  ///< there; what an earlier run of the same build left in it may be used
+    const std::atomic<bool>& stop;    ///< set: end with Error(interrupted) soon
+    std::function<void(const std::string& name, uint64_t steps)> partBegins;  ///< told what is done, for people
+    std::function<void()> stepDone;
 };
 
 /// Reads windows of one grid. One reader serves one thread.
@@ -42,6 +53,8 @@ class HeightReader {
     /// Heights in metres for `window` of the finest grid, which may reach beyond the grid: kNoHeight there and where
     /// the source has no data. `out` has the window's size. Throws Error(input) when the source cannot be read.
     virtual void read(const GridRect& window, GridView<float> out) = 0;
+    /// Whether what it reads is resampled on the way.
+    [[nodiscard]] virtual bool resamples() const { return false; }
 };
 
 /// A source of heights of any size: GDAL rasters, plain images, or a procedure. Thread-safe.
@@ -50,6 +63,11 @@ class HeightSource {
     virtual ~HeightSource() = default;
     [[nodiscard]] virtual const HeightGridInfo& info() const = 0;
     [[nodiscard]] virtual std::unique_ptr<HeightReader> openReader() const = 0;
+    /// Bytes on the disk that prepare() takes at most.
+    [[nodiscard]] virtual uint64_t preparedBytes() const { return 0; }
+    /// Makes it cheap to read windows in any order; called while no reader is open. What is made of files in the
+    /// workspace is read from then on, so the workspace must outlive all readers that are opened later.
+    virtual void prepare(const SourceWorkspace&) const {}
 };
 
 /// Reads windows of a photo in 8-bit sRGB, alpha 255 where the photo has data, else 0, resampled to the imagery grid:
@@ -58,6 +76,8 @@ class ColourReader {
   public:
     virtual ~ColourReader() = default;
     virtual void read(const GridRect& window, GridView<Rgba> out) = 0;
+    /// Whether what it reads is resampled on the way.
+    [[nodiscard]] virtual bool resamples() const { return false; }
 };
 
 class ColourSource {
@@ -70,6 +90,9 @@ class ColourSource {
     [[nodiscard]] virtual GroundRect bounds() const = 0;
     [[nodiscard]] virtual const std::vector<SourceFile>& files() const = 0;
     [[nodiscard]] virtual std::unique_ptr<ColourReader> openReader() const = 0;
+    /// As those of HeightSource.
+    [[nodiscard]] virtual uint64_t preparedBytes() const { return 0; }
+    virtual void prepare(const SourceWorkspace&) const {}
 };
 
 /// Which of several files covers the others where they overlap.

@@ -3,11 +3,12 @@
 
 # What needs no foreign library: choice of grids and levels, the procedural terrain, the answers of the missing.
 add_library(terray_raster_base STATIC
-    missing_libraries.cpp raster_layout.cpp synthetic.cpp synthetic_terrain.cpp)
+    missing_libraries.cpp raster_layout.cpp synthetic.cpp synthetic_terrain.cpp work_file.cpp)
 target_link_libraries(terray_raster_base PUBLIC terray_common)
 
 if(TERRAY_WITH_GDAL)
-    add_library(terray_raster_gdal STATIC gdal_heights.cpp gdal_photos.cpp gdal_raster.cpp raster_groups.cpp)
+    add_library(terray_raster_gdal STATIC gdal_heights.cpp gdal_photos.cpp gdal_raster.cpp gdal_reader.cpp gdal_vertical.cpp raster_groups.cpp
+        tiled_copies.cpp)
     target_link_libraries(terray_raster_gdal PUBLIC terray_raster_base PRIVATE terray::gdal)
 else()
     add_library(terray_raster_gdal INTERFACE)

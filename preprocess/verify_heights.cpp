@@ -155,7 +155,12 @@ class HeightVerifier {
         for (const HeightRecord& child : tile.children)
             if (child.exists) fault(tile.id, "claims a child below the finest level");
         // A finest sample lies within half a code step of its code; the slack covers rounding to float and double.
-        const double limit = tile.encoding.metresPerCode() * 0.5 * (1 + 1e-6) + 1e-9;
+        const double half = tile.encoding.metresPerCode() * 0.5;
+        if (half > metadata_.errorBound * (1 + 1e-6))
+            fault(tile.id, "has codes " + std::to_string(2 * half) +
+                               " m apart, too far for the metadata's errorBound of " +
+                               std::to_string(metadata_.errorBound) + " m");
+        const double limit = half * (1 + 1e-6) + 1e-9;
         if (static_cast<double>(tile.record.error) > limit)
             fault(tile.id, "claims an error of " + std::to_string(tile.record.error) +
                                " m, more than the rounding of its codes");

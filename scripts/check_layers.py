@@ -2,7 +2,7 @@
 """Checks that every #include keeps to the layers of the project.
 
 Two tables say it all: which project folders a folder may include (PROJECT), and which folders may include a foreign
-library and from how many files (FOREIGN; one file means that library's door). A header that neither table knows is an
+library and from how many files (FOREIGN; one file means that library's door; GDAL's is too large for one). A header that neither table knows is an
 error, so that a new dependency is always a decision taken here.
 
 usage: check_layers.py [ROOT]
@@ -54,7 +54,7 @@ FOREIGN = {
     "zlib": (r"(zlib|zconf)\.h", {"common": 1}),
     "GeographicLib": (r"GeographicLib/.*", {"common": 1}),
     "PROJ": (r"proj(_\w+)?\.h|proj/.*", {"common": 1}),
-    "GDAL": (r"(gdal|ogr|cpl|vrt)\w*\.h", {"preprocess": 1}),
+    "GDAL": (r"(gdal|ogr|cpl|vrt)\w*\.h", {"preprocess": 4}),
     "OpenImageIO": (r"OpenImageIO/.*", {"preprocess": 1, "client/output": MANY}),
     "OpenEXR": (r"(OpenEXR|Imath)/.*|(Imf|Imath|Iex|half)\w*\.h", {"client/output": MANY}),
     "stb": (r"(stb/)?stb_\w+\.h", {"preprocess": 1}),

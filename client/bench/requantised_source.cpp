@@ -28,6 +28,7 @@ RequantisedSource::RequantisedSource(const TileSource& source, double quantum)
     metadata_.minHeight -= half;
     metadata_.maxHeight += half;
     for (double& error : metadata_.levelErrors) error += half;
+    metadata_.errorBound += half;
 }
 
 Result<Bytes> RequantisedSource::read(TileLayer layer, const TileId& id) const {

@@ -22,6 +22,7 @@ DatasetMetadata fullMetadata() {
     metadata.heightTiles = 25;
     metadata.imageryTiles = 81;
     metadata.levelErrors = {123.5, 44.25, 10, 0.0025};
+    metadata.errorBound = 0.005;
     metadata.tool = "terray-preprocess 0.1.0";
     metadata.options = "--height-scale 0.3048";
     metadata.sources = {{"a \"quoted\" name.nc", 11534336, 1700000000}, {"old.tif", 0, -86400}};
@@ -89,10 +90,16 @@ TEST(DatasetMetadata, RefusesEachMissingField) {
     collectPaths(json, {}, paths);
     EXPECT_GE(paths.size(), 25U);
     for (const Path& path : paths) {
+        if (path.back() == "errorBound") continue;  // younger than the format
         const std::string message = complaint(copyWith(json, path, nullptr));
         EXPECT_NE(message, "accepted") << join(path);
         EXPECT_NE(message.find(path.back()), std::string::npos) << message;
     }
+}
+
+TEST(DatasetMetadata, TakesTheMeasuredErrorForABoundThatIsNotThere) {
+    const Json json = copyWith(toJson(fullMetadata()), {"heights", "errorBound"}, nullptr);
+    EXPECT_EQ(metadataFromJson(json).value().errorBound, 0.0025);
 }
 
 TEST(DatasetMetadata, RefusesEachFieldOfAnotherKind) {
@@ -130,6 +137,7 @@ TEST(DatasetMetadata, RefusesValuesOutOfRange) {
         {{"heights", "unit"}, Json("foot")},
         {{"heights", "tiles"}, Json(-1)},
         {{"heights", "tiles"}, Json(1e17)},
+        {{"heights", "errorBound"}, Json(-1)},
         {{"heights", "levelErrors"}, Json(Json::Array{1, 2, 3})},
         {{"heights", "levelErrors"}, Json(Json::Array{1, 2, 3, -4})},
         {{"heights", "levelErrors"}, Json(Json::Array{1, 2, 3, "x"})},

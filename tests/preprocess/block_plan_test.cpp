@@ -21,6 +21,14 @@ TEST(BlockPlan, ExtentsRoundUpToWholeCellsAndTiles) {
     EXPECT_EQ(extent.tilesAt(0), (GridSize{1, 1}));
 }
 
+TEST(BlockPlan, BlocksLieWhereTheSourceIs) {
+    // A photo of 3000 x 1000 texels of 1 mm, on ground of 100 km: 2^18 tiles a side.
+    const PyramidExtent extent{18, {int64_t{512} << 18, int64_t{512} << 18}, GridRect{50000000, 70000000, 3000, 1000}};
+    EXPECT_EQ(extent.coveredTilesAt(18), (GridRect{97656, 136718, 7, 3}));
+    EXPECT_EQ(extent.coveredTilesAt(0), (GridRect{0, 0, 1, 1}));
+    for (const BlockStage& stage : planStages(18, 3)) EXPECT_LE(blocksOf(extent, stage).size(), 2u);
+}
+
 TEST(BlockPlan, StagesMakeEveryLevelOnce) {
     for (uint32_t finest = 0; finest <= 12; ++finest) {
         for (uint32_t depth = 1; depth <= 4; ++depth) {

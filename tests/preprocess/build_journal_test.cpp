@@ -112,7 +112,8 @@ BlockRecord sampleRecord() {
             .holeSamples = uint64_t{1} << 50,
             .minHeight = -4,
             .maxHeight = 9,
-            .levelErrors = {1, 0.5f, 0.25f, 0.005f}};
+            .levelErrors = {1, 0.5f, 0.25f, 0.005f},
+            .finestStep = 0.01};
 }
 
 TEST(BlockRecord, ComesBackAsItWas) {
@@ -136,7 +137,7 @@ TEST(BlockRecord, RefusesEveryTruncationAndExtraBytes) {
     longer.push_back(std::byte{0});
     EXPECT_FALSE(decodeBlockRecord(longer).ok());
     Bytes absurd = whole;
-    for (size_t i = 40; i < 44; ++i) absurd[i] = std::byte{0xff};  // the count of errors
+    for (size_t i = 48; i < 52; ++i) absurd[i] = std::byte{0xff};  // the count of errors
     EXPECT_FALSE(decodeBlockRecord(absurd).ok());
 }
 

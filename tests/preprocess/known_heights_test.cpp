@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/error.h"
 #include "tests/preprocess/test_dataset.h"
 
 namespace terray {
@@ -117,12 +118,52 @@ TEST(KnownHeights, MetadataSaysWhatWasMeasured) {
     EXPECT_FALSE(metadata.imageryLevel);
     ASSERT_EQ(metadata.levelErrors.size(), 2u);
     EXPECT_NEAR(metadata.levelErrors[1], 0.005, 1e-5);
+    EXPECT_EQ(metadata.errorBound, 0.005);
     EXPECT_GT(metadata.levelErrors[0], 1);
     EXPECT_EQ(archive.header().maxZoom, 1);
     EXPECT_DOUBLE_EQ(archive.header().minLon, -105.5);
     EXPECT_NEAR(archive.header().centerLat, 37.05, 1e-7);
     for (const auto& entry : std::filesystem::directory_iterator(directory / "out"))
         EXPECT_EQ(entry.path().filename(), kHeightsFile);
+}
+
+TEST(KnownHeights, NoHeightIsOffByMoreThanTheBoundAskedFor) {
+    const TemporaryDirectory directory;
+    const GridHeights source(makeHills({700, 600}, 5, 2));
+    for (const double most : {0.005, 0.03, 0.25}) {
+        const std::filesystem::path out = directory / std::to_string(most);
+        const DatasetMetadata metadata = buildDataset(source, {}, {.out = out, .maxHeightError = most}).metadata;
+        EXPECT_EQ(metadata.errorBound, most);
+        EXPECT_LE(metadata.levelErrors.back(), most * (1 + 1e-6));
+        double greatest = 0;
+        for (const auto& [id, tile] : readHeightTiles(out)) {
+            if (id.level != metadata.tiling.finestLevel) continue;
+            for (int64_t y = 0; y < kTileCore; ++y)
+                for (int64_t x = 0; x < kTileCore; ++x) {
+                    const uint16_t code = tile.codes.at(x + kHeightApron, y + kHeightApron);
+                    if (code == kNoSurface) continue;
+                    const float truth =
+                        source.heights_.at(int64_t{id.x} * kTileCore + x, int64_t{id.y} * kTileCore + y);
+                    greatest = std::max(greatest, std::abs(tile.encoding.height(code) - double{truth}));
+                }
+        }
+        EXPECT_LE(greatest, most * (1 + 1e-9));
+        EXPECT_FLOAT_EQ(static_cast<float>(greatest), static_cast<float>(metadata.levelErrors.back()));
+        EXPECT_GT(greatest, 0.9 * most);
+    }
+}
+
+TEST(KnownHeights, ABoundThatSixteenBitsCannotKeepIsRefusedWithOneTheyCan) {
+    const TemporaryDirectory directory;
+    const GridHeights steep(makeHeights({512, 512}, [](int64_t x, int64_t) { return static_cast<double>(x) * 10; }));
+    try {
+        (void)buildDataset(steep, {}, {.out = directory / "out", .maxHeightError = 0.005});
+        FAIL() << "5110 m within one tile were coded to half a centimetre";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::input);
+        EXPECT_NE(std::string(error.what()).find("within 0.04"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(buildDataset(steep, {}, {.out = directory / "out", .maxHeightError = 0.04}).metadata.errorBound, 0.04);
 }
 
 TEST(KnownHeights, TheQuantumFollowsThePrecisionOfTheSource) {

@@ -43,6 +43,8 @@ TEST_F(Program, SynthesisesInspectsAndVerifies) {
     EXPECT_EQ(built.exitCode, 0) << built.err;
     EXPECT_NE(built.out.find("heights: 5 tiles"), std::string::npos) << built.out;
     EXPECT_NE(built.out.find("error by level"), std::string::npos);
+    for (const char* step : {"\n  read ", "\n  warp ", "\n  reduce ", "\n  encode ", "\n  write "})
+        EXPECT_NE(built.out.find(step), std::string::npos) << built.out;
     EXPECT_NE(built.err.find("heights 1 to 0: 1 blocks"), std::string::npos) << built.err;
     EXPECT_EQ(directory_.names(), Names{"out"});
 
@@ -115,6 +117,8 @@ TEST_F(Program, RefusesWrongUsage) {
     expectRefusal(run({"synth", "--size", "9", "--memory", "1M", "--out", path("out")}), ExitCode::usage, "256 MiB");
     expectRefusal(run({"synth", "--size", "9", "--quiet", "--json-progress", "--out", path("out")}), ExitCode::usage,
                   "--quiet");
+    expectRefusal(run({"synth", "--size", "9", "--max-height-error", "0", "--out", path("out")}), ExitCode::usage,
+                  "--max-height-error is 0 m");
     expectRefusal(run({"build", "--out", path("out")}), ExitCode::usage, "DEM");
     EXPECT_TRUE(directory_.names().empty());
 }

@@ -42,7 +42,7 @@ TEST(WorkFile, NamesFileAndReasonWhenItCannotBeMade) {
 
 TEST(LevelStore, ReturnsWindowsAcrossTilesAndFillsTheRest) {
     const TemporaryDirectory directory;
-    LevelStore store(directory / "level", {3, 2}, 2, -1.0f);
+    LevelStore store(directory / "level", {0, 0, 3, 2}, 2, -1.0f);
     const auto value = [](int64_t x, int64_t y, int plane) {
         return static_cast<float>(x + 2000 * y + 7000000 * plane);
     };
@@ -80,6 +80,26 @@ TEST(LevelStore, ReturnsWindowsAcrossTilesAndFillsTheRest) {
     }
     EXPECT_TRUE(store.has(2, 1));
     EXPECT_FALSE(store.has(0, 1));
+    EXPECT_FALSE(store.has(3, 0));
+}
+
+TEST(LevelStore, ReachesOnlyAsFarAsItsTiles) {
+    const TemporaryDirectory directory;
+    // A billion tiles before the first: a file of their size could not be made.
+    const GridRect tiles = {1000000000, 500000000, 2, 1};
+    LevelStore store(directory / "level", tiles, 1, -1.0f);
+    const Grid<float> fives({kTileCore, kTileCore}, 5.0f);
+    store.write(tiles.x + 1, tiles.y, std::array{fives.view()});
+    store.take(tiles.x + 1, tiles.y);
+    EXPECT_TRUE(store.has(tiles.x + 1, tiles.y));
+    EXPECT_FALSE(store.has(tiles.x, tiles.y));
+    EXPECT_FALSE(store.has(0, 0));
+    Grid<float> out({3, 1});
+    store.read({(tiles.x + 1) * kTileCore - 1, tiles.y * kTileCore, 3, 1}, 0, out.view());
+    EXPECT_EQ(out.at(0, 0), -1.0f);
+    EXPECT_EQ(out.at(1, 0), 5.0f);
+    EXPECT_EQ(out.at(2, 0), 5.0f);
+    EXPECT_LE(std::filesystem::file_size(directory / "level"), size_t{2} * kTileCore * kTileCore * sizeof(float));
 }
 
 }  // namespace
