@@ -16,6 +16,7 @@ constexpr const char* kHelp =
     "\n"
     "  build DEM... --out DIR   from rasters\n"
     "  synth --size N --out DIR procedural terrain\n"
+    "  extract DIR --out DIR    a smaller dataset: part of the ground, or of the levels\n"
     "  info DIR                 what a dataset holds\n"
     "  verify DIR               whether all that a dataset says of itself holds\n"
     "\n"
@@ -38,11 +39,13 @@ ExitCode runPreprocess(const std::vector<std::string>& arguments, const std::ato
     const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
     if (command == "build") return runBuild(rest, stop);
     if (command == "synth") return runSynth(rest, stop);
+    if (command == "extract") return runExtract(rest, stop);
     if (command == "info") return runInfo(rest);
     if (command == "verify") return runVerify(rest, stop);
     if (command == "--version") return printVersion();
     if (command != "--help")
-        throw Error(ExitCode::usage, "unknown command \"" + command + "\"; known are build, synth, info and verify");
+        throw Error(ExitCode::usage,
+                    "unknown command \"" + command + "\"; known are build, synth, extract, info and verify");
     std::fputs(kHelp, stdout);
     return ExitCode::ok;
 }

@@ -16,6 +16,7 @@ namespace terray {
 // The sub-commands, with the arguments after their names.
 [[nodiscard]] ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
+[[nodiscard]] ExitCode runExtract(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] ExitCode runInfo(const std::vector<std::string>& arguments);
 [[nodiscard]] ExitCode runVerify(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
 

@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/json.h"
+#include "preprocess/dataset_archives.h"
 #include "tests/preprocess/test_dataset.h"
 #include "tests/support/run_program.h"
 
@@ -61,6 +62,23 @@ TEST_F(Program, SynthesisesInspectsAndVerifies) {
     EXPECT_NE(verified.out.find("5 height tiles, 0 imagery tiles, 0 faults"), std::string::npos) << verified.out;
 }
 
+TEST_F(Program, ExtractsPartsThatVerifyAndNameWhereTheyAreFrom) {
+    synth("whole");
+    const DatasetMetadata whole = openDataset(directory_ / "whole").metadata;
+    const GroundRect ground = whole.groundBounds();
+    const std::string area = std::to_string(ground.west + 10) + "," + std::to_string(ground.north - 40) + "," +
+                             std::to_string(ground.west + 60) + "," + std::to_string(ground.north - 5);
+    const ProgramResult result = run({"extract", path("whole"), "--bbox", area, "--out", path("part")});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(run({"verify", path("part")}).exitCode, 0);
+    const DatasetMetadata part = openDataset(directory_ / "part").metadata;
+    EXPECT_EQ(part.options, "extract --bbox " + area + " of: " + whole.options);
+    EXPECT_LT(part.samples.count(), whole.samples.count());
+    expectRefusal(run({"extract", path("whole"), "--levels", "31", "--out", path("none")}), ExitCode::usage,
+                  "has levels 0 to");
+    expectRefusal(run({"extract", path("nowhere"), "--out", path("none")}), ExitCode::dataset, "no such directory");
+}
+
 TEST_F(Program, SameOptionsMakeTheSameBytes) {
     const std::vector<std::string> imagery =
         TERRAY_WITH_STB ? std::vector<std::string>{"--imagery"} : std::vector<std::string>{};
@@ -96,7 +114,7 @@ TEST_F(Program, QuietPrintsNothing) {
 }
 
 TEST_F(Program, HelpAndVersionAreNoErrors) {
-    for (const char* command : {"build", "synth", "info", "verify"}) {
+    for (const char* command : {"build", "synth", "extract", "info", "verify"}) {
         const ProgramResult help = run({command, "--help"});
         EXPECT_EQ(help.exitCode, 0);
         EXPECT_NE(help.out.find(std::string("terray-preprocess ") + command), std::string::npos) << help.out;
