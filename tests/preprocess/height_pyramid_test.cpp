@@ -8,6 +8,7 @@
 
 #include "preprocess/block_plan.h"
 #include "preprocess/verify_dataset.h"
+#include "tests/common/random.h"
 #include "tests/preprocess/test_dataset.h"
 
 namespace terray {
@@ -137,6 +138,29 @@ class TileCheck {
     const std::map<TileId, HeightTile>& tiles_;
 };
 
+/// Where two tiles of a level share samples, each has them to half a step of its own codes, and both or none of them.
+void checkAprons(const std::map<TileId, HeightTile>& tiles) {
+    const auto compare = [](const HeightTile& a, const HeightTile& b, int64_t right, int64_t down) {
+        const double limit = (a.encoding.metresPerCode() + b.encoding.metresPerCode()) / 2 * (1 + 1e-9);
+        int64_t wrong = 0;
+        for (int64_t y = 0; y < kHeightTileSide - down * kTileCore; ++y)
+            for (int64_t x = 0; x < kHeightTileSide - right * kTileCore; ++x) {
+                const uint16_t one = a.codes.at(x + right * kTileCore, y + down * kTileCore);
+                const uint16_t other = b.codes.at(x, y);
+                if ((one == kNoSurface) != (other == kNoSurface))
+                    ++wrong;
+                else if (one != kNoSurface && std::abs(a.encoding.height(one) - b.encoding.height(other)) > limit)
+                    ++wrong;
+            }
+        EXPECT_EQ(wrong, 0) << a.id << " and " << b.id;
+    };
+    for (const auto& [id, tile] : tiles)
+        for (const auto& [right, down] : {std::pair<uint32_t, uint32_t>(1, 0), {0, 1}, {1, 1}}) {
+            const auto neighbour = tiles.find({id.level, id.x + right, id.y + down});
+            if (neighbour != tiles.end()) compare(tile, neighbour->second, right, down);
+        }
+}
+
 struct Case {
     GridSize size;
     int holes;  ///< of 1000 samples
@@ -146,20 +170,20 @@ struct Case {
 
 const std::atomic<bool> kNeverStop = false;
 
-void checkCase(const Case& test) {
-    SCOPED_TRACE(testing::Message() << test.size.width << " x " << test.size.height << ", depth " << test.depth);
-    const GridHeights source(makeHills(test.size, 7, test.holes));
+void checkHeights(Grid<float> heights, const TestBuild& build) {
+    const GridHeights source(std::move(heights));
     const TemporaryDirectory directory;
-    const BuildSummary summary = buildTestDataset(source, directory / "out", {.jobs = test.jobs, .depth = test.depth});
+    const BuildSummary summary = buildTestDataset(source, directory / "out", build);
     const NaivePyramid naive(source.heights_);
     const auto tiles = readHeightTiles(directory / "out");
     ASSERT_EQ(summary.metadata.tiling.finestLevel, naive.finest());
     for (uint32_t level = 0; level <= naive.finest(); ++level) {
-        const GridSize count = PyramidExtent{naive.finest(), test.size}.tilesAt(level);
+        const GridSize count = PyramidExtent{naive.finest(), source.heights_.size()}.tilesAt(level);
         for (int64_t y = 0; y < count.height; ++y)
             for (int64_t x = 0; x < count.width; ++x)
                 TileCheck(naive, tiles).check({level, static_cast<uint32_t>(x), static_cast<uint32_t>(y)});
     }
+    checkAprons(tiles);
     EXPECT_EQ(summary.metadata.heightTiles, tiles.size());
     const auto isHole = [](float height) { return std::isnan(height); };
     EXPECT_EQ(summary.metadata.holeSamples,
@@ -167,6 +191,49 @@ void checkCase(const Case& test) {
     EXPECT_EQ(verifyDataset(openDataset(directory / "out"), 2, kNeverStop).faults.size(), 0u);
 }
 
+void checkCase(const Case& test) {
+    SCOPED_TRACE(testing::Message() << test.size.width << " x " << test.size.height << ", depth " << test.depth);
+    checkHeights(makeHills(test.size, 7, test.holes), {.jobs = test.jobs, .depth = test.depth});
+}
+
+/// Makes holes of rectangles anywhere, also beyond the edge; one sample stays.
+void punch(Grid<float>& heights, test::Random& random, uint64_t rectangles) {
+    for (uint64_t i = 0; i < rectangles; ++i) {
+        const auto anywhere = [&](int64_t cells) { return static_cast<int64_t>(random.below(cells + 200)) - 100; };
+        const GridRect hole =
+            intersection({anywhere(heights.width()), anywhere(heights.size().height),
+                          static_cast<int64_t>(random.below(700)), static_cast<int64_t>(random.below(700))},
+                         {0, 0, heights.width(), heights.size().height});
+        for (int64_t y = hole.y; y < hole.y + hole.height; ++y)
+            for (int64_t x = hole.x; x < hole.x + hole.width; ++x) heights.at(x, y) = kNoHeight;
+    }
+    heights.at(0, 0) = 7;
+}
+
+TEST(HeightPyramid, EqualsTheNaiveOneForAnySizeHolesAndBlocks) {
+    test::Random random(2026);
+    for (int i = 0; i < 14; ++i) {
+        // Half of the sides around the tile's or its double, where one sample more makes a tile more.
+        const auto side = [&] {
+            const uint64_t edge = 512 * (1 + random.below(2));
+            return static_cast<int64_t>(random.below(2) == 0 ? edge - 3 + random.below(7) : 1 + random.below(1400));
+        };
+        const GridSize size{side(), side()};
+        const TestBuild build{.jobs = static_cast<int>(1 + random.below(3)),
+                              .depth = static_cast<uint32_t>(1 + random.below(3))};
+        SCOPED_TRACE(testing::Message() << "case " << i << ": " << size.width << " x " << size.height << ", depth "
+                                        << build.depth);
+        Grid<float> heights = makeHills(size, random.below(1000), static_cast<int>(random.below(20)));
+        punch(heights, random, random.below(5));
+        checkHeights(std::move(heights), build);
+    }
+}
+TEST(HeightPyramid, EqualsTheNaiveOneForOddThousands) {
+    test::Random random(3);
+    Grid<float> heights = makeHills({3001, 1777}, 9, 2);
+    punch(heights, random, 6);
+    checkHeights(std::move(heights), {.jobs = 2, .depth = 2});
+}
 TEST(HeightPyramid, EqualsTheNaiveOneForASingleSample) {
     checkCase({{1, 1}, 0, 1, 1});
 }
