@@ -68,6 +68,8 @@ void addTiles(std::vector<Column>& columns) {
     add("triangles", [](const auto& f) { return count(f.report.triangles); });
     add("stand_ins", [](const auto& f) { return count(f.report.standIns); });
     add("wanted", [](const auto& f) { return count(f.report.wanted); });
+    columns.push_back({"heights_coarsening", 3, true, [](const auto& f) { return f.report.coarsening.heights; }});
+    columns.push_back({"imagery_coarsening", 3, true, [](const auto& f) { return f.report.coarsening.imagery; }});
     add("heights_resident", [](const auto& f) { return count(f.report.residentHeights); });
     add("imagery_resident", [](const auto& f) { return count(f.report.residentImagery); });
     addPaged("requested", &PagerStatistics::requested);
@@ -75,7 +77,7 @@ void addTiles(std::vector<Column>& columns) {
     add("edited", [](const auto& f) { return count(f.report.editedTiles); });
     addPaged("read_bytes", &PagerStatistics::bytesRead);
     add("uploaded_bytes", [](const auto& f) { return count(f.report.uploadedBytes); });
-    add("host_bytes", [](const auto& f) { return count(f.report.pager.hostBytes); });
+    add("host_bytes", [](const auto& f) { return count(f.report.hostBytes); });
     add("gpu_heights_bytes", [](const auto& f) { return count(f.report.gpuTiles.heights); });
     add("gpu_maxima_bytes", [](const auto& f) { return count(f.report.gpuTiles.maxima); });
     add("gpu_method_bytes", [](const auto& f) { return count(f.report.gpuTiles.method); });

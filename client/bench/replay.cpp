@@ -198,6 +198,12 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
                     launch.numberAt("computeMs").value());
     std::printf("\nearth: %s\n", replay.summary().stringAt("earth").value().c_str());
     std::printf("shading: %s\n", replay.summary().stringAt("shading").value().c_str());
+    if (const double heights = table.max("heights_coarsening"), imagery = table.max("imagery_coarsening");
+        heights > 1 || imagery > 1)
+        std::printf(
+            "memory: --gpu-memory is too small for all of the flight: tolerances were multiplied by up to %.2f "
+            "(heights) and %.2f (photo)\n",
+            heights, imagery);
     if (statistics)
         std::printf("steps a ray: mean %.1f, at most %.0f; rays out of steps: %.0f\n", table.median("steps_mean"),
                     table.max("steps_max"), table.sum("rays_out_of_steps"));

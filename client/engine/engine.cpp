@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iterator>
 #include <limits>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -17,9 +18,8 @@
 namespace terray {
 namespace {
 
-/// Tiles that are asked for at a time, and that may wait for upload: about 34 MB of heights. More than a frame uploads
-/// by default, so reader and decoders stay busy; few enough that refinement follows the most urgent tiles and that
-/// tiles which have arrived take little memory.
+/// Tiles that are asked for or wait for upload at a time, at most: about 34 MB of heights. More than a frame uploads by
+/// default, so reader and decoders stay busy; few enough that refinement follows the most urgent tiles.
 constexpr size_t kMaxPendingTiles = 64;
 /// Tiles that the tree may know before it forgets what is far from resident ones: about 25 MB.
 constexpr size_t kMaxKnownTiles = size_t{1} << 18;
@@ -59,6 +59,35 @@ EngineOptions settled(EngineOptions options, const TileSource& source) {
     return options;
 }
 
+/// A tile that was uploaded is evicted and needed again within one wait only while what is found out of the ground
+/// makes detail be given up.
+constexpr int kMostUploadsInAWait = 3;
+
+/// Of one tile that waits for upload; photos with their chains take less.
+uint64_t pendingTileBytes() {
+    return hostBytesOf({TileLayer::heights, {}});
+}
+
+/// Tiles that may wait for upload: what a quarter of main memory's budget holds.
+size_t mostPendingTiles(uint64_t hostBudgetBytes) {
+    return static_cast<size_t>(std::clamp<uint64_t>(hostBudgetBytes / 4 / pendingTileBytes(), 1, kMaxPendingTiles));
+}
+
+/// The pager's part of the budget: without those that wait.
+PagerOptions withoutPending(PagerOptions options) {
+    const uint64_t pending = mostPendingTiles(options.hostBudgetBytes) * pendingTileBytes();
+    options.hostBudgetBytes -= std::min(options.hostBudgetBytes, pending);
+    return options;
+}
+
+/// How many tiles a view may need beside the root, for all of them to come whatever is drawn meanwhile. One slot is the
+/// root's. With m of n needed tiles lacking, n - m slots hold the others and at most m what stands in for them (each
+/// has one stand-in), so of n + 2 slots one is always free for the next, and nothing that is drawn must go.
+size_t tilesBesideRoot(uint32_t slots, uint64_t tiles) {
+    if (slots >= tiles) return std::numeric_limits<size_t>::max();
+    return slots > 2 ? slots - 2 : 0;
+}
+
 /// The greatest drop per squared metre over the middle of the dataset; it changes by parts in 100 over the largest.
 double greatestBend(const EarthModel& earth, const DatasetMetadata& metadata) {
     const GroundRect ground = metadata.groundBounds();
@@ -90,7 +119,12 @@ struct Engine::State {
           resident(source, shaders, slotOptions(source, options, earth), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
           targets(width, height, options.features, options.colour),
-          pager(source, options.pager) {}
+          mostPending(mostPendingTiles(options.pager.hostBudgetBytes)),
+          pager(source, withoutPending(options.pager)) {
+        const DatasetMetadata& metadata = source.metadata();
+        options.selection.maxHeightTiles = tilesBesideRoot(resident.gpu().heightSlots(), metadata.heightTiles);
+        options.selection.maxImageryTiles = tilesBesideRoot(resident.gpu().imagerySlots(), metadata.imageryTiles);
+    }
 
     /// Selects for the current view from what is resident, and protects what is drawn from eviction.
     void selectAndPin();
@@ -124,7 +158,8 @@ struct Engine::State {
     Selection selection;
     FrameReport report;
     std::optional<EditList> newEdits;
-    Pager pager;  // last: its threads end first
+    size_t mostPending;  ///< tiles that may wait for upload
+    Pager pager;         // last: its threads end first
 };
 
 void Engine::State::selectAndPin() {
@@ -181,33 +216,33 @@ bool Engine::State::takeEdits() {
 }
 
 void Engine::State::stream() {
-    takeArrivals(kMaxPendingTiles - std::min(kMaxPendingTiles, resident.pendingTiles()));
+    takeArrivals(mostPending - std::min(mostPending, resident.pendingTiles()));
     resident.beginFrame();
     selectAndPin();
     const std::vector<TileRequest> order = attainable();
     resident.keepOnly(order);
     if (!upload(order, options.uploadBytesPerFrame).empty()) selectAndPin();
     std::vector<TileRequest> missing = notPending(attainable());
-    if (missing.size() > kMaxPendingTiles) missing.resize(kMaxPendingTiles);
+    missing.resize(std::min(missing.size(), mostPending - std::min(mostPending, resident.pendingTiles())));
     pager.want(missing);
 }
 
 void Engine::State::waitForTiles() {
-    KeySet uploadedHere;  // a tile that was evicted again is not fetched twice: so the loop ends
+    std::unordered_map<TileKey, int, TileKeyHash> uploads;  // bounded, so that the loop ends
     for (;;) {
         throwIfInterrupted();
         resident.beginFrame();
         selectAndPin();
         std::vector<TileRequest> batch = attainable();
-        std::erase_if(batch, [&](const TileRequest& request) { return uploadedHere.contains(keyOf(request)); });
-        if (batch.size() > kMaxPendingTiles) batch.resize(kMaxPendingTiles);
+        std::erase_if(batch, [&](const auto& request) { return uploads[keyOf(request)] >= kMostUploadsInAWait; });
+        batch.resize(std::min(batch.size(), mostPending));
         resident.keepOnly(batch);
         if (batch.empty()) break;
 
         const size_t failedBefore = report.failures.size();
         waitForArrivals(notPending(batch));
         const std::vector<TileKey> uploaded = upload(batch, kUnlimited);
-        uploadedHere.insert(uploaded.begin(), uploaded.end());
+        for (const TileKey& key : uploaded) ++uploads[key];
         const bool lostSome = report.failures.size() > failedBefore;
         if (!report.unreachable.empty() || (uploaded.empty() && !lostSome)) break;
     }
@@ -238,12 +273,15 @@ void Engine::State::fillReport() {
     for (const DrawNode& node : selection.nodes)
         if (!node.heightsExact || !node.imageryExact) ++report.standIns;
     report.wanted = selection.wanted.size();
+    report.coarsening = selection.coarsening;
     report.residentHeights = resident.gpu().residentHeights();
     report.residentImagery = resident.gpu().residentImagery();
     report.gpuTiles = resident.gpu().allocatedBytes();
     report.gpuTargets = targets.bytes();
     report.gpuBuffers = renderer.bufferBytes() + resident.gpu().editBufferBytes();
     report.pager = pager.statistics();
+    report.hostBytes = report.pager.hostBytes + report.pager.comingBytes +
+                       (report.pager.untaken + resident.pendingTiles()) * pendingTileBytes();
 }
 
 void requireAllTiles(const FrameReport& report, const std::string& consequence) {

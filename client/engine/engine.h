@@ -36,8 +36,8 @@ struct EngineOptions {
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;
     std::filesystem::path drawCostsFile;  ///< of Method::hybrid, see draw_costs_file.h; unless render.drawCosts are set
-    bool measurePreparation = false;  ///< tiles().preparation(); frames then wait for the GPU at each upload
-    double exaggeration = 1;          ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
+    bool measurePreparation = false;      ///< tiles().preparation(); frames then wait for the GPU at each upload
+    double exaggeration = 1;              ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
     /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.
     std::optional<UtcTime> sunTime;
     std::vector<OverlayMesh> overlay;  ///< drawn into every picture
@@ -52,12 +52,14 @@ struct FrameReport {
     std::array<double, kGpuPasses> gpuMs{};
     size_t nodes = 0;
     size_t bilinearNodes = 0;
-    size_t rasterisedNodes = 0;  ///< drawn by geometry of the method
-    uint64_t triangles = 0;  ///< drawn by methods that rasterise geometry, sides of boxes not counted
+    size_t rasterisedNodes = 0;   ///< drawn by geometry of the method
+    uint64_t triangles = 0;       ///< drawn by methods that rasterise geometry, sides of boxes not counted
     double bytesPerTriangle = 0;  ///< that the method keeps of resident tiles; 0: it keeps no mesh of each tile's own
-    size_t casters = 0;   ///< nodes outside the picture that may cast shadows into it
-    size_t standIns = 0;  ///< nodes drawn from an ancestor of what was wanted
-    size_t wanted = 0;    ///< tiles that the frame still lacked, failed ones among them
+    size_t casters = 0;           ///< nodes outside the picture that may cast shadows into it
+    size_t standIns = 0;          ///< nodes drawn from an ancestor of what was wanted
+    size_t wanted = 0;            ///< tiles that the frame still lacked, failed ones among them
+    Coarsening coarsening;        ///< of the tolerances, so that memory can hold what the view needs
+    uint64_t hostBytes = 0;       ///< of tiles in main memory: held, on their way, and waiting for upload; each in full
     size_t uploadedTiles = 0;
     size_t editedTiles = 0;  ///< of the uploaded ones, those that edits change
     uint64_t uploadedBytes = 0;
@@ -91,9 +93,9 @@ class Engine {
 
     /// Draws one frame into targets(). With waitForTiles it first loads until the selection for this camera is
     /// complete, or until budgets allow nothing more: then the picture depends only on the camera (and, when budgets
-    /// are too small, on what was drawn before), never on the order in which tiles arrive. It always ends: within one
-    /// wait no tile is uploaded twice, a tile that failed is not asked for again, and where a server fails the wait
-    /// ends with what there is (FrameReport::unreachable).
+    /// are far too small, on what was drawn before), never on the order in which tiles arrive. It always ends: within
+    /// one wait no tile is uploaded more than three times, a tile that failed is not asked for again, and where a
+    /// server fails the wait ends with what there is (FrameReport::unreachable).
     FrameReport drawFrame(const Camera& camera, bool waitForTiles);
 
     /// From the next frame on heights, the camera's among them, are drawn multiplied by this. No tile is loaded anew;

@@ -120,6 +120,22 @@ void ResidentTiles::beginFrame() {
 void ResidentTiles::pin(const Selection& selection) {
     pin(selection.nodes);
     pin(selection.casters);
+    pinNeeded(selection);
+}
+
+/// Not all that a view needs is drawn: a box may turn out to be outside the picture once its tile is there. If such
+/// tiles could go they would be wanted again.
+void ResidentTiles::pinNeeded(const Selection& selection) {
+    for (const TileId& id : selection.heightTiles) {
+        if (!isResident({TileLayer::heights, id})) continue;
+        pinnedHeights_.insert(id);
+        gpu_.pinHeights(id);
+    }
+    for (const TileId& id : selection.imageryTiles) {
+        if (!isResident({TileLayer::imagery, id})) continue;
+        pinnedImagery_.insert(id);
+        gpu_.pinImagery(id);
+    }
 }
 
 void ResidentTiles::pin(const std::vector<DrawNode>& nodes) {

@@ -62,8 +62,8 @@ class ResidentTiles {
     void forgetBeyond(size_t most) { tree_.forgetBeyond(most); }
     /// From now on nothing is pinned but the roots.
     void beginFrame();
-    /// What a selection draws is not evicted until the next beginFrame(); the ancestors of it go last after that, since
-    /// they are the next to stand in.
+    /// What a selection draws, and what it needs and has, is not evicted until the next beginFrame(); the ancestors of
+    /// it go last after that, since they are the next to stand in.
     void pin(const Selection& selection);
     /// Whether every slot of a layer holds the root or a tile pinned by pin(): refinement of that layer ends here.
     [[nodiscard]] bool full(TileLayer layer) const;
@@ -76,6 +76,7 @@ class ResidentTiles {
 
   private:
     void pin(const std::vector<DrawNode>& nodes);
+    void pinNeeded(const Selection& selection);
     void loadRoots();
     [[nodiscard]] LoadedTile readHeightRoot() const;
     void uploadRoot(const LoadedTile& root);

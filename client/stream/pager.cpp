@@ -186,7 +186,8 @@ void Pager::State::release(const TileJob& job) {
     busy.erase(job.key);
 }
 
-/// Settles a request: all its parts are there, or one cannot be had.
+/// Settles a request: all its parts are there, or one cannot be had. One that nobody wants any more is cancelled late;
+/// what has come is held as long as there is room.
 void Pager::State::finish(JobPtr job) {
     release(*job);
     const TilePart* bad = job->lostPart();
@@ -199,6 +200,7 @@ void Pager::State::finish(JobPtr job) {
     } else {
         deliver(loadedTile(job->key, job->parts.back().tile, job->imageryChain));
     }
+    dropUntaken();
     reader.wake();
     if (isSettled()) settled.notify_all();
 }
@@ -317,6 +319,8 @@ PagerStatistics Pager::statistics() const {
     const std::lock_guard lock(state_->mutex);
     PagerStatistics now = state_->count;
     now.hostBytes = state_->cache.bytes();
+    now.comingBytes = state_->reserved;
+    now.untaken = state_->loaded.size();
     return now;
 }
 

@@ -47,10 +47,12 @@ struct PagerStatistics {
     uint64_t requested = 0;  ///< put into the IO thread's queue; what stays wanted counts once
     uint64_t delivered = 0;  ///< taken, or waiting to be
     uint64_t failed = 0;
-    uint64_t cancelled = 0;  ///< no longer wanted before they were read, or before they were taken
-    uint64_t hostHits = 0;   ///< answered from main memory instead
-    uint64_t bytesRead = 0;  ///< stored bytes read from the source
-    uint64_t hostBytes = 0;  ///< held now
+    uint64_t cancelled = 0;    ///< no longer wanted before they were read, or before they were taken
+    uint64_t hostHits = 0;     ///< answered from main memory instead
+    uint64_t bytesRead = 0;    ///< stored bytes read from the source
+    uint64_t hostBytes = 0;    ///< held now
+    uint64_t comingBytes = 0;  ///< main memory that is reserved for tiles on their way
+    uint64_t untaken = 0;      ///< tiles that wait to be taken
     uint64_t evicted = 0;
     TileReadStatistics reads;
 };

@@ -29,6 +29,7 @@ struct Cell {
     Neighbourhood ground;
     Choice heights;
     Choice imagery;
+    uint32_t heightLevel = 0;  ///< of the tile that heights are drawn from once all is resident
 };
 
 /// The finest that a subtree has put on the draw list, as levels + 1; 0: nothing.
@@ -51,10 +52,10 @@ Shown shownBy(const Cell& cell) {
     return {cell.heights.drawn->level + 1, noPhoto ? kNoPhoto : photo.drawn ? photo.drawn->level + 1 : 0};
 }
 
-/// One traversal of the tree with tolerances multiplied by `coarsening`.
+/// One traversal of the tree with tolerances multiplied.
 class Traversal {
   public:
-    Traversal(const TileTree& tree, const View& view, const SelectionOptions& options, double coarsening)
+    Traversal(const TileTree& tree, const View& view, const SelectionOptions& options, const Coarsening& coarsening)
         : tree_(tree),
           view_(view),
           options_(options),
@@ -91,7 +92,7 @@ class Traversal {
     const TileTree& tree_;
     const View& view_;
     const SelectionOptions& options_;
-    double coarsening_;
+    Coarsening coarsening_;
     Frustum frustum_;
     GroundBounds bounds_;
     bool useImagery_;
@@ -132,7 +133,10 @@ Selection Traversal::run() {
 
 Shown Traversal::visit(Cell cell) {
     if (overflowed_) return {};
-    const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground, levelsAbove(cell))};
+    // Not how high a stand-in may reach: what a view needs would else hang on what is resident, and come and go in
+    // turn.
+    const uint32_t levelsAboveCell = cell.id.level - cell.heightLevel;
+    const HeightRange reach{bounds_.wallFoot(cell.ground), bounds_.highest(cell.ground, levelsAboveCell)};
     if (!concerns(cell.id, reach, cell.seen)) return {};
     const HeightRange heights{cell.ground[4].bottom, cell.ground[4].top};
     const Metres distance = distanceTo(seenBoxOf(cell.id, heights, tree_.tiling(), view_), view_.eye);
@@ -180,6 +184,7 @@ Shown Traversal::visitChildren(const Cell& cell) {
 std::optional<Cell> Traversal::childOf(const Cell& cell, uint32_t quadrant) const {
     Cell child = cell;
     child.id = cell.id.child(quadrant);
+    if (!cell.heights.settled) child.heightLevel = child.id.level;
     const uint32_t deepest = std::min(tree_.finestHeightLevel(), cell.heights.drawn->level + kMaxStandInLevels);
     child.ground = bounds_.ofChild(cell.ground, child.id, deepest);
     if (!child.ground[4].surface) return {};
@@ -189,9 +194,10 @@ std::optional<Cell> Traversal::childOf(const Cell& cell, uint32_t quadrant) cons
 
 bool Traversal::heightsSuffice(const TileId& cell, Metres distance) const {
     if (!options_.lodDistance)
-        return heightError(tree_.heights(cell)->record, distance) <= options_.tolerance * coarsening_;
+        return heightError(tree_.heights(cell)->record, distance) <= options_.tolerance * coarsening_.heights;
     const double finer = tree_.tiling().spacing(cell.level + 1);
-    return coarsening_ * distance.value() >= *options_.lodDistance * finer;
+    constexpr double kLeastDistance = 1e-3;  // as in screenError: some factor must let the root suffice
+    return coarsening_.heights * std::max(distance.value(), kLeastDistance) >= *options_.lodDistance * finer;
 }
 
 void Traversal::chooseHeights(Cell& cell, Metres distance) {
@@ -199,11 +205,14 @@ void Traversal::chooseHeights(Cell& cell, Metres distance) {
     if (choice.settled) return;
     const auto& own = *tree_.heights(cell.id);
     const Pixels standInError = heightError(tree_.heights(*choice.drawn)->record, distance);
+    // Nothing coarser may stand in for what lies beneath, so it is needed even where finer tiles are drawn.
+    const bool bridges = levelsAbove(cell) >= kMaxStandInLevels;
     if (own.resident) choice.drawn = cell.id;
     const bool fineEnough = cell.id.level == tree_.finestHeightLevel() || heightsSuffice(cell.id, distance);
-    const bool mustLoadFirst = !own.childrenKnown || cell.id.level - choice.drawn->level >= kMaxStandInLevels;
-    if (!fineEnough && !mustLoadFirst) return;
-    choice.settled = true;
+    choice.settled = fineEnough || !own.childrenKnown || (bridges && !own.resident);
+    if (!choice.settled && !bridges) return;
+    if (cell.id.level > 0) result_.heightTiles.push_back(cell.id);
+    if (!choice.settled) return;
     choice.exact = own.resident;
     if (!choice.exact) request(TileLayer::heights, cell, standInError);
 }
@@ -219,11 +228,12 @@ void Traversal::chooseImagery(Cell& cell, Metres distance) {
     const Pixels standInTexel = texelSide(choice.drawn ? choice.drawn->level : 0, distance);
     if (own != nullptr && own->resident) choice.drawn = cell.id;
     const bool fineEnough = cell.id.level == *tree_.finestImageryLevel() ||
-                            texelSide(cell.id.level, distance) <= options_.imageryTolerance * coarsening_;
+                            texelSide(cell.id.level, distance) <= options_.imageryTolerance * coarsening_.imagery;
     const bool mustLoadFirst = own == nullptr || !own->childrenKnown;
     if (!fineEnough && !mustLoadFirst) return;
     choice.settled = true;
     choice.exact = own != nullptr && own->resident;
+    if (cell.id.level > 0) result_.imageryTiles.push_back(cell.id);
     if (!choice.exact) request(TileLayer::imagery, cell, standInTexel);
 }
 
@@ -248,14 +258,59 @@ Shown Traversal::emit(const Cell& cell, Metres distance) {
     return shownBy(cell);
 }
 
-/// The selection with tolerances multiplied by `coarsening`, if maxNodes can hold it.
-std::optional<Selection> fitting(const TileTree& tree, const View& view, const SelectionOptions& options,
-                                 double coarsening) {
-    Traversal traversal(tree, view, options, coarsening);
-    Selection selection = traversal.run();
-    if (traversal.overflowed() || selection.nodes.size() + selection.casters.size() > options.maxNodes) return {};
-    return selection;
-}
+/// Traversals of one tree for one view, coarser and coarser until the limits are kept.
+class Fitting {
+  public:
+    Fitting(const TileTree& tree, const View& view, const SelectionOptions& options)
+        : tree_(tree), view_(view), options_(options) {}
+
+    Selection run() {
+        const double both = leastFactor(1, [this](double f) { return nodesFit({f, f}); });
+        const double heights = leastFactor(both, [&](double f) {
+            return draw({f, both}).heightTiles.size() <= options_.maxHeightTiles;
+        });
+        const double imagery = leastFactor(both, [&](double f) {
+            return draw({heights, f}).imageryTiles.size() <= options_.maxImageryTiles;
+        });
+        (void)draw({heights, imagery});
+        return std::move(*last_);
+    }
+
+  private:
+    const Selection& draw(const Coarsening& coarsening) {
+        if (last_ && last_->coarsening == coarsening) return *last_;
+        Traversal traversal(tree_, view_, options_, coarsening);
+        last_ = traversal.run();
+        last_->coarsening = coarsening;
+        overflowed_ = traversal.overflowed();
+        return *last_;
+    }
+    bool nodesFit(const Coarsening& coarsening) {
+        const Selection& selection = draw(coarsening);
+        return !overflowed_ && selection.nodes.size() + selection.casters.size() <= options_.maxNodes;
+    }
+    /// The least factor, to within 10 %, that is accepted and no less than `least`. The root alone is accepted always.
+    template <class Accepts>
+    static double leastFactor(double least, const Accepts& accepts) {
+        if (accepts(least)) return least;
+        double refused = least, accepted = 2 * least;
+        for (; !accepts(accepted); accepted *= 4) {
+            refused = accepted;
+            TERRAY_CHECK_OP(accepted, <, 1e30);
+        }
+        while (accepted > 1.1 * refused) {
+            const double middle = std::sqrt(refused * accepted);
+            (accepts(middle) ? accepted : refused) = middle;
+        }
+        return accepted;
+    }
+
+    const TileTree& tree_;
+    const View& view_;
+    const SelectionOptions& options_;
+    std::optional<Selection> last_;
+    bool overflowed_ = false;
+};
 
 }  // namespace
 
@@ -265,27 +320,7 @@ Pixels screenError(Metres error, Metres distance, const View& view) {
 
 Selection select(const TileTree& tree, const View& view, const SelectionOptions& options) {
     TERRAY_CHECK_OP(options.maxNodes, >, size_t{0});
-    if (auto whole = fitting(tree, view, options, 1)) return std::move(*whole);
-
-    // Too long: the least coarsening that fits, to within 10 %, so that detail is given up alike near and far.
-    double tooFine = 1, coarse = 2;
-    auto best = fitting(tree, view, options, coarse);
-    for (; !best; best = fitting(tree, view, options, coarse)) {
-        tooFine = coarse;
-        coarse *= 4;
-        TERRAY_CHECK_OP(coarse, <, 1e30);  // the root alone always fits
-    }
-    while (coarse > 1.1 * tooFine) {
-        const double middle = std::sqrt(tooFine * coarse);
-        if (auto finer = fitting(tree, view, options, middle)) {
-            best = std::move(finer);
-            coarse = middle;
-        } else {
-            tooFine = middle;
-        }
-    }
-    best->limited = true;
-    return std::move(*best);
+    return Fitting(tree, view, options).run();
 }
 
 }  // namespace terray

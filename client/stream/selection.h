@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -48,7 +49,18 @@ struct SelectionOptions {
     bool useImagery = true;
     /// Towards the sun, unit length, z > 0, when shadows are drawn.
     std::optional<glm::dvec3> shadowsFrom;
-    size_t maxNodes = 4096;  ///< the draw list never gets longer; refinement stops, coarse cells remain
+    // Limits. Where one would be exceeded, tolerances are multiplied by the least factor (to 10 %) that keeps it, so
+    // that near and far give up detail alike.
+    size_t maxNodes = 4096;                                       ///< of the draw list
+    size_t maxHeightTiles = std::numeric_limits<size_t>::max();   ///< of Selection::heightTiles
+    size_t maxImageryTiles = std::numeric_limits<size_t>::max();  ///< of Selection::imageryTiles
+};
+
+/// What tolerances were multiplied by to keep the limits; 1: nothing was given up.
+struct Coarsening {
+    double heights = 1;
+    double imagery = 1;
+    bool operator==(const Coarsening&) const = default;
 };
 
 /// A tile to load: wanted for this view and not resident.
@@ -63,7 +75,11 @@ struct Selection {
     std::vector<DrawNode> nodes;      ///< front to back
     std::vector<DrawNode> casters;    ///< outside the picture, casting shadows into it; no imagery; in no useful order
     std::vector<TileRequest> wanted;  ///< most urgent first; ties in a fixed order
-    bool limited = false;             ///< maxNodes stopped refinement
+    /// The tiles that the view needs, resident or wanted, but for the roots: once all are resident, all is exact.
+    std::vector<TileId> heightTiles;
+    std::vector<TileId> imageryTiles;
+    Coarsening coarsening;
+    [[nodiscard]] bool limited() const { return coarsening != Coarsening(); }
     [[nodiscard]] bool complete() const { return wanted.empty(); }
 };
 

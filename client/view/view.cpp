@@ -145,7 +145,12 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     }
     std::printf("%s: %d x %d pixels, %zu nodes from %zu height and %zu imagery tiles%s\n", out.c_str(), options.width,
                 options.height, report.nodes, report.residentHeights, report.residentImagery,
-                report.wanted > 0 ? ", coarser than asked: the GPU memory budget is too small" : "");
+                report.wanted > 0 ? ", and some tiles are lacking: the memory budget is too small" : "");
+    if (report.coarsening != Coarsening())
+        std::printf(
+            "memory: --gpu-memory is too small for this view: tolerances were multiplied by %.2f (heights) and "
+            "%.2f (photo)\n",
+            report.coarsening.heights, report.coarsening.imagery);
     std::printf("earth: %s\n", engine.earth().description().c_str());
     if (engine.shading().mode != Shading::photo) std::printf("shading: %s\n", description(engine.shading()).c_str());
     return ExitCode::ok;

@@ -104,7 +104,7 @@ TEST_F(MethodTest, StreamedGroundWithHolesAndLevelJumpsIsDrawnByEveryMethod) {
         for (const std::string method :
              {"march", "linear", "hull:stride=0.2,steps=100,more=300", "cones", "mesh:error=0.1", "hybrid:error=0.1"}) {
             EngineOptions options = inspectedOptions();
-            options.gpuHeightBytes = 6 * 720'000;  // ancestors stand in beside finer tiles
+            options.gpuHeightBytes = 6 * 720'000;  // coarse tiles beside finer ones
             options.render.method = methodNamed(method);
             options.render.drawCosts = DrawCosts{.castPixel = 1, .meshTriangle = 0.02};
             if (curved) options.earth = {.shape = EarthShape::curved, .refraction = -200};

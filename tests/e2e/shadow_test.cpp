@@ -151,7 +151,7 @@ TEST_P(Shadows, GroundThatNowhereHidesTheSunHasNoAcne) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     int64_t ground = 0, dark = 0, jumps = 0;
-    // Starved budgets put stand-ins beside fine tiles; a sun of 25 degrees is steeper than every slope and every chord.
+    // Starved budgets put coarse tiles beside fine ones; a sun of 25 degrees is steeper than every slope and every chord.
     for (const uint64_t slots : {5, 12, 30}) {
         for (const double azimuth : {0.0, 45.0, 135.0, 222.0, 270.0}) {
             EngineOptions options = shadowOptions(azimuth, 25, GetParam());

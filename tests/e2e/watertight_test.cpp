@@ -48,13 +48,14 @@ TEST_F(Watertight, TwoHundredRandomCamerasUnderAStarvedBudgetShowNoHole) {
     ColumnOracle oracle(dataset.source());
     std::mt19937 random(2009);
     Comparison all;
-    // Budgets of 3 to 24 tiles for a view that wants more force stand-ins next to fine tiles: jumps of several levels.
+    // Budgets of 3 to 24 tiles for a view that wants more; and every other frame does not wait, so that tiles of
+    // earlier cameras stand next to coarse ones: jumps of several levels.
     for (const uint64_t slots : {3, 6, 12, 24}) {
         EngineOptions options = inspectedOptions(Surface::columns);
         options.gpuHeightBytes = slots * 720'000;
         Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
         for (int i = 0; i < 50; ++i) {
-            engine.drawFrame(randomCamera(random, oracle), true);
+            engine.drawFrame(randomCamera(random, oracle), i % 3 == 0);
             const Comparison one = compare(engine, oracle);
             if (one.holes + one.falseGround + one.misplaced + one.outOfSteps > 0)
                 ADD_FAILURE() << "slots " << slots << " camera " << i << ": holes " << one.holes << ", false ground "
@@ -64,7 +65,7 @@ TEST_F(Watertight, TwoHundredRandomCamerasUnderAStarvedBudgetShowNoHole) {
     }
     expectClean(all);
     EXPECT_GT(all.ground, all.pixels / 4) << "the cameras must see ground for this to mean anything";
-    EXPECT_GT(all.jumps, 1000) << "level jumps must be in view";
+    EXPECT_GT(all.jumps, 500) << "level jumps must be in view";
     RecordProperty("pixels", std::to_string(all.pixels));
     RecordProperty("jumps", std::to_string(all.jumps));
 }
@@ -103,7 +104,7 @@ TEST_F(Watertight, RandomCamerasOverASmallEarthShowNoHoleByEitherLaunch) {
             options.exaggeration = factor;
             Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
             for (int i = 0; i < 30; ++i) {
-                engine.drawFrame(randomCamera(random, oracle), true);
+                engine.drawFrame(randomCamera(random, oracle), i % 3 == 0);
                 const Comparison one = compare(engine, oracle);
                 if (one.holes + one.falseGround + one.misplaced + one.outOfSteps > 0)
                     ADD_FAILURE() << "factor " << factor << " camera " << i << ": holes " << one.holes
@@ -113,7 +114,7 @@ TEST_F(Watertight, RandomCamerasOverASmallEarthShowNoHoleByEitherLaunch) {
         }
     expectClean(all);
     EXPECT_GT(all.ground, all.pixels / 5);
-    EXPECT_GT(all.jumps, 500);
+    EXPECT_GT(all.jumps, 150);
 }
 
 TEST_F(Watertight, CliffsAlongTileBordersAreClosed) {

@@ -182,11 +182,7 @@ TEST_F(ShadingTest, EachTileHasOneColourAndNoOtherTileHasIt) {
             }
 }
 
-TEST_F(ShadingTest, ResidencyShowsWhoStandsInWhereBudgetsAreTooSmall) {
-    constexpr uint64_t kTwoTiles = 1'500'000;
-    EngineOptions fewHeights, fewPhotos, slow;
-    fewHeights.gpuHeightBytes = kTwoTiles;
-    fewPhotos.gpuImageryBytes = kTwoTiles / 2;
+TEST_F(ShadingTest, ResidencyShowsWhoStandsInWhereTilesAreLost) {
     std::set<std::pair<bool, bool>> seen;
     const auto check = [&](const ShadedPicture& picture) {
         EXPECT_LT(worstTint(picture,
@@ -199,9 +195,12 @@ TEST_F(ShadingTest, ResidencyShowsWhoStandsInWhereBudgetsAreTooSmall) {
                   kByte);
     };
     check(draw(Shading::residency));
-    check(draw(Shading::residency, fewHeights));
-    check(draw(Shading::residency, fewPhotos));
-    check(draw(Shading::residency, slow, 1));  // the first frame has the roots alone
+    check(draw(Shading::residency, {}, 1));  // the first frame has the roots alone
+    for (const TileLayer layer : {TileLayer::heights, TileLayer::imagery}) {
+        AnalyticDataset lossy({.finestLevel = 2, .imageryLevel = 2});
+        for (uint32_t quadrant = 0; quadrant < 4; ++quadrant) lossy.lose(layer, TileId{}.child(quadrant));
+        check(ShadedPicture(shaders_, lossy, Shading::residency, {}, camera_));
+    }
     EXPECT_EQ(seen.size(), 4u);
 }
 

@@ -73,7 +73,7 @@ TEST(Selection, HonoursTheToleranceOrSaysWhatIsMissing) {
         const TileTree tree = randomTree(dataset, random);
         const SelectionOptions options;
         const Selection selection = select(tree, randomView(dataset, random), options);
-        EXPECT_FALSE(selection.limited);
+        EXPECT_FALSE(selection.limited());
         for (const DrawNode& node : selection.nodes) {
             ASSERT_TRUE(tree.heights(node.heightTile)->resident);
             ASSERT_TRUE(node.heightTile.covers(node.cell));
@@ -286,8 +286,40 @@ TEST(Selection, NeverExceedsItsLongestList) {
             const Selection free = select(tree, view, {});
             const Selection selection = select(tree, view, {.maxNodes = longest});
             EXPECT_LE(selection.nodes.size(), longest);
-            EXPECT_EQ(selection.limited, free.nodes.size() > longest);
+            EXPECT_EQ(selection.limited(), free.nodes.size() > longest);
             EXPECT_EQ(selection.nodes.empty(), free.nodes.empty()) << "coarse cells remain";
+        }
+    }
+}
+
+TEST(Selection, NeverNeedsMoreTilesThanItMayAndGivesUpDetailEvenly) {
+    const FakeDataset& dataset = hillyDataset();
+    Random random(15);
+    for (int round = 0; round < 40; ++round) {
+        const View view = randomView(dataset, random);
+        const Selection free = select(everything(dataset), view, {});
+        for (const size_t most : {0u, 1u, 3u, 9u}) {
+            const SelectionOptions options{.maxHeightTiles = most, .maxImageryTiles = 2 * most};
+            TileTree tree = rootsOnly(dataset);
+            const Selection selection = settle(tree, dataset, view, options);
+            EXPECT_LE(selection.heightTiles.size(), most);
+            EXPECT_LE(selection.imageryTiles.size(), 2 * most);
+            EXPECT_TRUE(selection.coarsening.heights > 1 || free.heightTiles.size() <= most);
+            EXPECT_TRUE(selection.coarsening.imagery > 1 || free.imageryTiles.size() <= 2 * most);
+            EXPECT_TRUE(selection.limited() || selection.nodes.size() == free.nodes.size());
+            for (const DrawNode& node : selection.nodes) {
+                EXPECT_TRUE(node.heightsExact && node.imageryExact);
+                const bool finest = node.heightTile.level == tree.finestHeightLevel();
+                EXPECT_TRUE(finest || node.screenError <= options.tolerance.value() * selection.coarsening.heights);
+            }
+            // What is needed hangs on no residency: nothing is wanted in turns.
+            for (const auto& [id, tile] : dataset.heights)
+                if (id.level > 0 && tree.heights(id) && tree.heights(id)->resident) tree.setHeightsResident(id, false);
+            for (const auto& [id, tile] : dataset.imagery)
+                if (id.level > 0 && tree.imagery(id) && tree.imagery(id)->resident) tree.setImageryResident(id, false);
+            const Selection again = select(tree, view, options);
+            EXPECT_EQ(again.heightTiles, selection.heightTiles);
+            EXPECT_EQ(again.imageryTiles, selection.imageryTiles);
         }
     }
 }
