@@ -76,6 +76,8 @@ void addTiles(std::vector<Column>& columns) {
     add("uploaded", [](const auto& f) { return count(f.report.uploadedTiles); });
     add("edited", [](const auto& f) { return count(f.report.editedTiles); });
     addPaged("read_bytes", &PagerStatistics::bytesRead);
+    add("received_bytes",
+        [](const auto& f) { return count(f.report.pager.reads.receivedBytes - f.pagerBefore.reads.receivedBytes); });
     add("uploaded_bytes", [](const auto& f) { return count(f.report.uploadedBytes); });
     add("host_bytes", [](const auto& f) { return count(f.report.hostBytes); });
     add("gpu_heights_bytes", [](const auto& f) { return count(f.report.gpuTiles.heights); });

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <thread>
 
 #include "client/bench/bench.h"
 #include "client/bench/frame_table.h"
@@ -23,6 +25,8 @@
 namespace terray {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 struct ReplayOptions {
     DatasetCommandLine dataset;
     std::string flight;
@@ -33,6 +37,8 @@ struct ReplayOptions {
     int64_t warmUpFrames = 3;
     bool pictures = false;
     bool waitForTiles = false;
+    bool realTime = false;
+    double lingerSeconds = 0;
     bool noStatistics = false;
     bool force = false;
     EngineCommandLine engine;
@@ -51,6 +57,11 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
     line.flag("--frames", options.pictures, "write each frame as PNG, outside of the times");
     line.flag("--wait-for-tiles", options.waitForTiles,
               "each frame waits until all of its tiles are loaded: the same pictures on every machine");
+    line.flag("--real-time", options.realTime,
+              "each frame shows where the camera is by then; --fps is the most frames a second");
+    line.option(
+        "--linger", options.lingerSeconds, "SECONDS",
+        "with --real-time: at the end, draw the last camera on until it lacks no tile, for so long at most (0)");
     line.option("--warm-up", options.warmUpFrames, "N", "draw the first frame so often before the flight (3)");
     line.flag("--no-statistics", options.noStatistics,
               "count no rays and steps: their columns stay empty, steps.csv is not written");
@@ -61,6 +72,12 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
         throw Error(ExitCode::usage, "--fps: expected a number above 0, at most 10000");
     if (options.warmUpFrames < 0 || options.warmUpFrames > 10000)
         throw Error(ExitCode::usage, "--warm-up: expected 0 to 10000 frames");
+    if (options.realTime && options.waitForTiles)
+        throw Error(ExitCode::usage, "--real-time: found --wait-for-tiles, too; a clock waits for no tile");
+    if (!(options.lingerSeconds >= 0 && options.lingerSeconds <= 3600))
+        throw Error(ExitCode::usage, "--linger: expected 0 to 3600 seconds");
+    if (options.lingerSeconds > 0 && !options.realTime)
+        throw Error(ExitCode::usage, "--linger: expected --real-time with it");
     if (options.pictures && !TERRAY_WITH_OUTPUT)
         throw Error(ExitCode::unsupported, "--frames: this build writes no pictures (TERRAY_WITH_OUTPUT is off)");
     return true;
@@ -85,24 +102,26 @@ size_t frameCount(const Flight& flight, double framesPerSecond) {
 /// One flight over one dataset, from the first warm-up frame to the last line of the table.
 class Replay {
   public:
-    Replay(const ReplayOptions& options, const TileSource& source, const Flight& flight, RunDirectory& directory)
-        : options_(options),
+    /// @param begun  when the dataset began to be opened
+    Replay(const ReplayOptions& options, const TileSource& source, const Flight& flight, RunDirectory& directory,
+           Clock::time_point begun)
+        : begun_(begun),
+          options_(options),
           flight_(flight),
           directory_(directory),
           shaders_(options.engine.shaders()),
           engine_(source, shaders_, options.drawn, options.width, options.height),
-          table_(directory.table()),
-          frames_(frameCount(flight, options.framesPerSecond)) {}
+          table_(directory.table()) {}
 
     void run() {
         warmUp();
-        const auto start = std::chrono::steady_clock::now();
-        ProgressBar progress(frames_);
-        for (size_t index = 0; index < frames_; ++index) {
-            fly(index);
-            progress.show(index + 1);
+        const Clock::time_point start = Clock::now();
+        if (options_.realTime) {
+            flyByTheClock(start);
+        } else {
+            flyFrameByFrame();
         }
-        wallSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        wallSeconds_ = secondsSince(start);
     }
 
     FrameTable& table() { return table_; }
@@ -124,6 +143,8 @@ class Replay {
                             {"earth", engine_.earth().description()},
                             {"shading", description(engine_.shading())},
                             {"wallSeconds", wallSeconds_},
+                            {"firstPictureSeconds", firstPictureSeconds_},
+                            {"prefetch", prefetch()},
                             {"peakResidentBytes", peakResidentBytes()},
                             {"warmUp", Json::Object{{"frames", options_.warmUpFrames},
                                                     {"readBytes", pagerAtStart_.bytesRead},
@@ -132,9 +153,54 @@ class Replay {
     }
 
   private:
+    static double secondsSince(Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    void flyFrameByFrame() {
+        const size_t frames = frameCount(flight_, options_.framesPerSecond);
+        ProgressBar progress(frames);
+        while (frames_ < frames) {
+            fly(static_cast<double>(frames_) / options_.framesPerSecond);
+            progress.show(frames_);
+        }
+    }
+
+    void flyByTheClock(Clock::time_point start) {
+        const double end = flight_.seconds() + options_.lingerSeconds;
+        const size_t expected = frameCount(flight_, options_.framesPerSecond);
+        ProgressBar progress(expected);
+        bool lacking = true;
+        for (double now = 0; now <= flight_.seconds() || (lacking && now <= end); now = secondsSince(start)) {
+            lacking = fly(now).wanted > 0;
+            progress.show(std::min(expected, static_cast<size_t>(now * options_.framesPerSecond) + 1));
+            const auto next = std::chrono::duration<double>(now + 1 / options_.framesPerSecond);
+            std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(next));
+        }
+    }
+
+    /// How far tiles that were read ahead were of use. The hit rate: of the requests that main memory could not have
+    /// answered without, those for what had been read ahead, or was being read.
+    [[nodiscard]] Json prefetch() const {
+        const PrefetchStatistics& ahead = pagerBefore_.prefetch;
+        const uint64_t hits = ahead.answered + ahead.joined;
+        const uint64_t misses = pagerBefore_.requested - ahead.joined;
+        return Json::Object{
+            {"tiles", ahead.tiles},
+            {"bytes", ahead.bytes},
+            {"usedTiles", ahead.usedTiles},
+            {"usedBytes", ahead.usedBytes},
+            {"answered", ahead.answered},
+            {"joined", ahead.joined},
+            {"cancelled", ahead.cancelled},
+            {"failed", ahead.failed},
+            {"hitRate", hits == 0 ? 0 : static_cast<double>(hits) / static_cast<double>(hits + misses)}};
+    }
+
     FrameReport draw(double seconds) {
         throwIfInterrupted();
         FrameReport report = engine_.drawFrame(flight_.at(seconds), options_.waitForTiles);
+        if (firstPictureSeconds_ == 0) firstPictureSeconds_ = secondsSince(begun_);
         if (!options_.waitForTiles) report.unreachable.clear();  // as while flying: it is asked for again
         requireAllTiles(report, "the flight was broken off");
         return report;
@@ -145,8 +211,8 @@ class Replay {
         pagerBefore_ = pagerAtStart_;
     }
 
-    void fly(size_t index) {
-        const double seconds = static_cast<double>(index) / options_.framesPerSecond;
+    FrameReport fly(double seconds) {
+        const size_t index = frames_++;
         FrameMeasurement frame{.index = index, .seconds = seconds, .camera = flight_.at(seconds)};
         frame.report = draw(seconds);
         frame.pagerBefore = pagerBefore_;
@@ -162,8 +228,10 @@ class Replay {
         if (options_.pictures) writePng(directory_.frame(index), targets.readSrgb().view());
 #endif
         table_.add(frame);
+        return frame.report;
     }
 
+    Clock::time_point begun_;
     const ReplayOptions& options_;
     const Flight& flight_;
     RunDirectory& directory_;
@@ -171,10 +239,11 @@ class Replay {
     Engine engine_;
     FrameTable table_;
     StepHistogram steps_;
-    size_t frames_;
+    size_t frames_ = 0;
     PagerStatistics pagerAtStart_;
     PagerStatistics pagerBefore_;
     double wallSeconds_ = 0;
+    double firstPictureSeconds_ = 0;
 };
 
 Json protocolOf(const ReplayOptions& options) {
@@ -182,6 +251,8 @@ Json protocolOf(const ReplayOptions& options) {
                         {"height", options.height},
                         {"fps", options.framesPerSecond},
                         {"waitForTiles", options.waitForTiles},
+                        {"realTime", options.realTime},
+                        {"lingerSeconds", options.lingerSeconds},
                         {"warmUpFrames", options.warmUpFrames},
                         {"statistics", !options.noStatistics},
                         {"pictures", options.pictures}};
@@ -204,6 +275,12 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
             "memory: --gpu-memory is too small for all of the flight: tolerances were multiplied by up to %.2f "
             "(heights) and %.2f (photo)\n",
             heights, imagery);
+    const Json summary = replay.summary();
+    const Json& ahead = *summary.find("prefetch");
+    if (ahead.numberAt("tiles").value() > 0)
+        std::printf("read ahead: %.0f tiles, %.1f MB, of which %.1f MB were used; hit rate %.0f %%\n",
+                    ahead.numberAt("tiles").value(), ahead.numberAt("bytes").value() / 1e6,
+                    ahead.numberAt("usedBytes").value() / 1e6, 100 * ahead.numberAt("hitRate").value());
     if (statistics)
         std::printf("steps a ray: mean %.1f, at most %.0f; rays out of steps: %.0f\n", table.median("steps_mean"),
                     table.max("steps_max"), table.sum("rays_out_of_steps"));
@@ -216,6 +293,7 @@ void printResult(const Replay& replay, FrameTable& table, const RunDirectory& di
 ExitCode runReplay(const std::vector<std::string>& arguments) {
     ReplayOptions options;
     if (!parse(options, arguments)) return ExitCode::ok;
+    const auto begun = Clock::now();
     const std::unique_ptr<TileSource> source = options.dataset.open();
     const Flight flight = loadFlight(options.flight);
     options.drawn = engineOptions(options, *source);  // refuses what is wrong before anything is created
@@ -231,7 +309,7 @@ ExitCode runReplay(const std::vector<std::string>& arguments) {
                                      .protocol = protocolOf(options),
                                      .options = options.engine.toJson()};
     const Json manifest = describeRun(description, context.strings(), utcNow());
-    Replay replay(options, *source, flight, directory);
+    Replay replay(options, *source, flight, directory, begun);
     replay.run();
     replay.table().finish();
     if (!options.noStatistics) replay.steps().write(directory.steps());

@@ -14,6 +14,7 @@
 #include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
 #include "client/engine/sun_clock.h"
+#include "client/stream/camera_motion.h"
 
 namespace terray {
 namespace {
@@ -58,6 +59,10 @@ EngineOptions settled(EngineOptions options, const TileSource& source) {
     if (!needs.light && !needs.shadowSteps) options.render.shadows.reset();
     return options;
 }
+
+/// Where the camera is expected, tiles are read ahead: what it sees when these are over.
+constexpr std::array<double, 2> kSecondsAhead{0.4, 1.0};
+constexpr size_t kMostTilesAhead = 32;
 
 /// A tile that was uploaded is evicted and needed again within one wait only while what is found out of the ground
 /// makes detail be given up.
@@ -134,6 +139,9 @@ struct Engine::State {
     [[nodiscard]] std::vector<TileRequest> attainable() const;
     /// Those of them that have not arrived.
     [[nodiscard]] std::vector<TileRequest> notPending(const std::vector<TileRequest>& requests) const;
+    /// What the camera as it moves will want soon.
+    [[nodiscard]] std::vector<TileRequest> tilesAhead();
+    [[nodiscard]] View viewFrom(const Camera& camera) const;
     std::vector<TileKey> upload(const std::vector<TileRequest>& order, uint64_t budgetBytes);
     /// One frame's share of paging: what has arrived is uploaded within the budget, what is lacking is asked for.
     void stream();
@@ -154,6 +162,7 @@ struct Engine::State {
     FrameTargets targets;
     GpuTimer timer;
     KeySet failed;
+    CameraMotion motion;
     View view;
     Selection selection;
     FrameReport report;
@@ -215,6 +224,28 @@ bool Engine::State::takeEdits() {
     return true;
 }
 
+View Engine::State::viewFrom(const Camera& camera) const {
+    View seen = viewOf(camera, targets.width(), targets.height());
+    seen.earth = earth.at(camera.position);
+    return exaggerated(seen, options.exaggeration);
+}
+
+std::vector<TileRequest> Engine::State::tilesAhead() {
+    std::vector<TileRequest> tiles;
+    for (const LoadedTile& tile : pager.takeAhead()) resident.learn(tile);
+    for (const double seconds : kSecondsAhead) {
+        const std::optional<Camera> camera = motion.ahead(seconds);
+        if (!camera) break;
+        const Selection there = select(resident.tree(), viewFrom(*camera), options.selection);
+        tiles.insert(tiles.end(), there.wanted.begin(), there.wanted.end());
+    }
+    std::erase_if(tiles, [this](const TileRequest& tile) {
+        return failed.contains(keyOf(tile)) || resident.isPending(keyOf(tile));
+    });
+    tiles.resize(std::min(tiles.size(), kMostTilesAhead));
+    return tiles;
+}
+
 void Engine::State::stream() {
     takeArrivals(mostPending - std::min(mostPending, resident.pendingTiles()));
     resident.beginFrame();
@@ -224,7 +255,7 @@ void Engine::State::stream() {
     if (!upload(order, options.uploadBytesPerFrame).empty()) selectAndPin();
     std::vector<TileRequest> missing = notPending(attainable());
     missing.resize(std::min(missing.size(), mostPending - std::min(mostPending, resident.pendingTiles())));
-    pager.want(missing);
+    pager.want(missing, options.prefetch ? tilesAhead() : std::vector<TileRequest>());
 }
 
 void Engine::State::waitForTiles() {
@@ -313,9 +344,9 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     State& state = *state_;
     state.report = {};
     if (state.sunClock) state.options.render.sunDirection = state.sunClock->direction(camera.position);
-    View view = viewOf(camera, state.targets.width(), state.targets.height());
-    view.earth = state.earth.at(camera.position);
-    state.view = exaggerated(view, state.options.exaggeration);
+    state.view = state.viewFrom(camera);
+    if (state.options.prefetch && !waitForTiles)
+        state.motion.observe(camera, std::chrono::duration<double>(start.time_since_epoch()).count());
     state.timer.enter(GpuPass::upload);
     state.resident.forgetBeyond(kMaxKnownTiles);
     const bool edited = state.takeEdits();

@@ -36,6 +36,7 @@ struct EngineOptions {
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;
     std::filesystem::path drawCostsFile;  ///< of Method::hybrid, see draw_costs_file.h; unless render.drawCosts are set
+    bool prefetch = true;                 ///< read ahead along the camera's motion, where frames do not wait for tiles
     bool measurePreparation = false;      ///< tiles().preparation(); frames then wait for the GPU at each upload
     double exaggeration = 1;              ///< of heights, see View; kLeastExaggeration .. kGreatestExaggeration
     /// The sun of this moment, over the camera's place in each frame; takes the place of render.sunDirection.

@@ -137,6 +137,9 @@ void EngineCommandLine::declare(CommandLine& line) {
                "for tiles on the GPU, half to heights and half to the photo; all to heights without a photo (512M)");
     line.bytes("--upload-budget", uploadBudget_, "of one frame, at least one tile; not while waiting for tiles (16M)");
     line.option("--decode-threads", decodeThreads_, "N", "0: one less than the machine's cores (0)");
+    line.option("--prefetch", prefetch_, "on|off",
+                "read ahead along the camera's motion, while nothing wanted is to be read (on)");
+    line.option("--cancel-reads", cancelReads_, "on|off", "from a server: break off what is no longer wanted (on)");
     line.option("--launch", launch_, "auto|raster|compute",
                 "rays from rasterised boxes or from dispatches alone; auto times both at the start (auto)");
     line.option("--occlusion", occlusion_, "on|off", "raster launch: the tile-ID pass ahead of the march (on)");
@@ -181,6 +184,8 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     if (shadows_ != "on" && shadows_ != "off") refuse("--shadows", shadows_, "on or off");
     if (!shaders_.empty() && !std::filesystem::is_directory(shaders_)) refuse("--shaders", shaders_, "a directory");
     if (sky_ != "gradient" && sky_ != "physical") refuse("--sky", sky_, "gradient or physical");
+    if (prefetch_ != "on" && prefetch_ != "off") refuse("--prefetch", prefetch_, "on or off");
+    if (cancelReads_ != "on" && cancelReads_ != "off") refuse("--cancel-reads", cancelReads_, "on or off");
     if (occlusion_ != "on" && occlusion_ != "off") refuse("--occlusion", occlusion_, "on or off");
 
     EngineOptions options;
@@ -210,6 +215,8 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.drawCostsFile = drawCosts_;
     options.pager.hostBudgetBytes = hostMemory_;
     options.pager.decodeThreads = static_cast<int>(decodeThreads_);
+    options.pager.cancelReads = cancelReads_ == "on";
+    options.prefetch = prefetch_ == "on";
     options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;
     options.gpuHeightBytes = gpuMemory_ - options.gpuImageryBytes;
     options.uploadBytesPerFrame = uploadBudget_;
@@ -247,6 +254,8 @@ Json EngineCommandLine::toJson() const {
                         {"gpu-memory", gpuMemory_},
                         {"upload-budget", uploadBudget_},
                         {"decode-threads", decodeThreads_},
+                        {"prefetch", prefetch_},
+                        {"cancel-reads", cancelReads_},
                         {"launch", launch_},
                         {"occlusion", occlusion_},
                         {"surface", surface_},

@@ -54,6 +54,8 @@ class EngineCommandLine {
     uint64_t gpuMemory_ = EngineOptions().gpuHeightBytes + EngineOptions().gpuImageryBytes;
     uint64_t uploadBudget_ = EngineOptions().uploadBytesPerFrame;
     int64_t decodeThreads_ = 0;
+    std::string prefetch_ = "on";
+    std::string cancelReads_ = "on";
     std::string launch_ = "auto";
     std::string occlusion_ = "on";
     std::string surface_ = "auto";

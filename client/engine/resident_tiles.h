@@ -51,7 +51,9 @@ class ResidentTiles {
     Uploads setEdits(EditList edits, GpuTimer* timer);
     [[nodiscard]] const EditList& edits() const;
 
-    /// Learns what an arrived tile says of its children, and keeps it for upload unless the GPU has it already.
+    /// Learns what a tile says of its children.
+    void learn(const LoadedTile& tile);
+    /// The same of an arrived tile, and keeps it for upload unless the GPU has it already.
     void accept(LoadedTile tile);
     [[nodiscard]] bool isPending(const TileKey& key) const { return pending_.contains(key); }
     [[nodiscard]] size_t pendingTiles() const { return pending_.size(); }
@@ -80,7 +82,6 @@ class ResidentTiles {
     void loadRoots();
     [[nodiscard]] LoadedTile readHeightRoot() const;
     void uploadRoot(const LoadedTile& root);
-    void learn(const LoadedTile& tile);
     /// What one tile's upload came to; no tiles when there was no slot for it.
     Uploads uploadOne(const LoadedTile& tile, GpuTimer* timer);
     GpuTiles::Upload uploadHeights(const HeightTile& tile, GpuTimer* timer, Uploads& done);

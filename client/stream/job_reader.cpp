@@ -54,6 +54,7 @@ void JobReader::take(TileRead read) {
         reading.job->unreachable = read.payload.failure().message;
     } else if (++part.reads; read.payload) {
         payloadBytes_ += read.payload->size();
+        part.storedBytes = read.payload->size();
         part.payload = *std::move(read.payload);
     } else {
         part.trouble = read.payload.failure().message;

@@ -19,6 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Requests under way, wanted ones among them, up to which others are read ahead.
+constexpr size_t kMostReadsAhead = 4;
+
 LoadedTile loadedTile(const TileKey& key, const HeldTile& tile, std::shared_ptr<const Bytes> chain) {
     return {key.layer, key.id, tile.heights, std::move(chain), tile.imagery};
 }
@@ -33,10 +36,16 @@ struct Pager::State {
         : options(pagerOptions), reader(source.startReads()), mayHeal(reader.mayHeal()) {}
 
     void accept(const TileKey& key, bool queuedBefore);
+    void acceptAhead(const TileKey& key);
     [[nodiscard]] JobPtr nextJob();
+    [[nodiscard]] JobPtr nextJobAhead();
+    [[nodiscard]] bool mayBegin(const std::vector<TileKey>& needs, uint64_t budget) const;
+    [[nodiscard]] TileKeySet worthReading() const;
     [[nodiscard]] JobPtr begin(const TileKey& key);
     void fail(const TileKey& key, Loss loss, const std::string& message);
     [[nodiscard]] bool isRefused(const TileKey& key);
+    bool noteUse(const TileKey& key);
+    void finishAhead(const TileJob& job);
     void deliver(LoadedTile tile);
     void dropUntaken();
     void release(const TileJob& job);
@@ -44,7 +53,7 @@ struct Pager::State {
     void finish(JobPtr job);
     void readLoop();
     void decodeLoop();
-    [[nodiscard]] bool isSettled() const { return queue.empty() && busy.empty(); }
+    [[nodiscard]] bool isSettled() const { return queue.empty() && busy.size() == ahead.busy.size(); }
 
     const PagerOptions options;
     JobReader reader;  ///< the IO thread's alone, but for wake()
@@ -60,7 +69,16 @@ struct Pager::State {
     TileKeySet untaken;         ///< delivered, not yet taken
     TileKeySet lost;            ///< tiles that could not be had and never will
     std::unordered_map<TileKey, Clock::time_point, TileKeyHash> refused;  ///< requests not taken up before then
-    std::deque<JobPtr> toRead;                                            ///< to be read once more
+    /// What may be wanted soon. A request in `busy` that is not wanted yet is in ahead.busy, too.
+    struct {
+        std::deque<TileKey> queue;
+        TileKeySet wanted;                                          ///< by the last want()
+        TileKeySet busy;                                            ///< requests begun
+        std::unordered_map<TileKey, uint64_t, TileKeyHash> unused;  ///< tiles read and not wanted yet: stored bytes
+        std::unordered_map<TileKey, Clock::time_point, TileKeyHash> refused;
+        std::vector<LoadedTile> arrived;
+    } ahead;
+    std::deque<JobPtr> toRead;  ///< to be read once more
     std::deque<JobPtr> toDecode;
     HostCache cache;
     uint64_t reserved = 0;  ///< bytes that the tiles in `coming` will take
@@ -72,6 +90,10 @@ struct Pager::State {
 
 /// Puts a wanted tile on its way, unless it is so already or never will be.
 void Pager::State::accept(const TileKey& key, bool queuedBefore) {
+    if (ahead.busy.erase(key) > 0) {
+        ++count.requested;
+        ++count.prefetch.joined;
+    }
     if (busy.contains(key) || untaken.contains(key) || isRefused(key)) return;
     const auto needs = needsOf(key);
     if (!std::all_of(needs.begin(), needs.end(), [this](const TileKey& need) { return cache.holds(need); })) {
@@ -81,11 +103,39 @@ void Pager::State::accept(const TileKey& key, bool queuedBefore) {
     }
     count.hostHits += queuedBefore ? 0 : 1;
     if (key.layer == TileLayer::heights) {
+        count.prefetch.answered += noteUse(key) ? 1 : 0;
         deliver(loadedTile(key, *cache.use(key), nullptr));
         return;
     }
     toDecode.push_back(begin(key));  // only its chain is to be gathered, by a worker
     decodeWork.notify_one();
+}
+
+/// Lets a tile be read ahead, unless there is nothing to read, or it was of no use before.
+void Pager::State::acceptAhead(const TileKey& key) {
+    if (wanted.contains(key) || !ahead.wanted.insert(key).second) return;
+    if (busy.contains(key) || untaken.contains(key) || isRefused(key)) return;
+    const auto refusal = ahead.refused.find(key);
+    if (refusal != ahead.refused.end() && Clock::now() < refusal->second) return;
+    if (ahead.unused.contains(key) || cache.holds(key)) return;
+    ahead.queue.push_back(key);
+}
+
+/// A tile is wanted, or its photo's descendant is: if it was read ahead, that was of use. @return whether it was
+bool Pager::State::noteUse(const TileKey& key) {
+    const auto found = ahead.unused.find(key);
+    if (found == ahead.unused.end()) return false;
+    ++count.prefetch.usedTiles;
+    count.prefetch.usedBytes += found->second;
+    ahead.unused.erase(found);
+    return true;
+}
+
+/// Whether there is memory for a request within a budget. One at a time goes ahead always.
+bool Pager::State::mayBegin(const std::vector<TileKey>& needs, uint64_t budget) const {
+    uint64_t missing = 0;
+    for (const TileKey& need : needs) missing += cache.holds(need) ? 0 : hostBytesOf(need);
+    return reserved + missing <= budget || busy.empty();
 }
 
 /// The job that the IO thread should read now; nullptr when there is none, or it has to wait for others to end.
@@ -111,13 +161,33 @@ Pager::State::JobPtr Pager::State::nextJob() {
             ++place;
             continue;
         }
-        uint64_t missing = 0;
-        for (const TileKey& need : needs) missing += cache.holds(need) ? 0 : hostBytesOf(need);
-        if (reserved + missing > options.hostBudgetBytes && !busy.empty()) return nullptr;
+        if (!mayBegin(needs, options.hostBudgetBytes)) return nullptr;
         queue.erase(place);
         return begin(key);
     }
+    return queue.empty() ? nextJobAhead() : nullptr;
+}
+
+/// The next request to be read ahead, while few are under way.
+Pager::State::JobPtr Pager::State::nextJobAhead() {
+    while (!ahead.queue.empty() && busy.size() < kMostReadsAhead) {
+        const TileKey key = ahead.queue.front();
+        ahead.queue.pop_front();
+        const auto needs = needsOf(key);
+        const auto inTheWay = [this](const TileKey& need) { return lost.contains(need) || coming.contains(need); };
+        if (std::any_of(needs.begin(), needs.end(), inTheWay)) continue;
+        if (!mayBegin(needs, options.hostBudgetBytes / 4)) return nullptr;
+        ahead.busy.insert(key);
+        return begin(key);
+    }
     return nullptr;
+}
+
+/// What reads should go on: those ahead only while nothing wanted waits.
+TileKeySet Pager::State::worthReading() const {
+    TileKeySet keys = wanted;
+    if (queue.empty()) keys.insert(ahead.wanted.begin(), ahead.wanted.end());
+    return keys;
 }
 
 /// Takes what is held, reserves memory for the rest.
@@ -128,7 +198,9 @@ Pager::State::JobPtr Pager::State::begin(const TileKey& key) {
         TilePart part{.key = need};
         if (const HeldTile* held = cache.use(need)) {
             part.tile = *held;
+            if (!ahead.busy.contains(key) && noteUse(need) && need == key) ++count.prefetch.answered;
         } else {
+            ahead.unused.erase(need);  // it has gone in vain
             part.fetched = true;
             coming.insert(need);
             reserved += hostBytesOf(need);
@@ -186,12 +258,30 @@ void Pager::State::release(const TileJob& job) {
     busy.erase(job.key);
 }
 
+/// Settles a request that is not wanted yet.
+void Pager::State::finishAhead(const TileJob& job) {
+    if (job.lostPart() != nullptr || !job.unreachable.empty()) {
+        ++count.prefetch.failed;
+        ahead.refused[job.key] = Clock::now() + std::chrono::milliseconds(options.healMs);
+        return;
+    }
+    for (const TilePart& part : job.parts) {
+        if (!part.fetched) continue;
+        ++count.prefetch.tiles;
+        count.prefetch.bytes += part.storedBytes;
+        ahead.unused[part.key] = part.storedBytes;
+        ahead.arrived.push_back(loadedTile(part.key, part.tile, nullptr));
+    }
+}
+
 /// Settles a request: all its parts are there, or one cannot be had. One that nobody wants any more is cancelled late;
 /// what has come is held as long as there is room.
 void Pager::State::finish(JobPtr job) {
     release(*job);
     const TilePart* bad = job->lostPart();
-    if (bad != nullptr) {
+    if (ahead.busy.erase(job->key) > 0) {
+        finishAhead(*job);
+    } else if (bad != nullptr) {
         if (!mayHeal) lost.insert(bad->key);
         fail(job->key, mayHeal ? Loss::damaged : Loss::forGood,
              describe(job->key) + " could not be had: " + describe(bad->key) + " was read twice: " + bad->trouble);
@@ -218,7 +308,7 @@ void Pager::State::handOver(std::vector<JobPtr> jobs) {
             toRead.push_back(std::move(job));
         } else {
             release(*job);
-            ++count.cancelled;
+            ++(ahead.busy.erase(job->key) > 0 ? count.prefetch.cancelled : count.cancelled);
             if (isSettled()) settled.notify_all();
         }
     }
@@ -227,7 +317,7 @@ void Pager::State::handOver(std::vector<JobPtr> jobs) {
 void Pager::State::readLoop() {
     std::unique_lock lock(mutex);
     while (!stopping) {
-        if (options.cancelReads) handOver(reader.cancelUnless(wanted));
+        if (options.cancelReads) handOver(reader.cancelUnless(worthReading()));
         JobPtr job = nextJob();
         const bool idle = job == nullptr;
         lock.unlock();
@@ -279,7 +369,7 @@ Pager::~Pager() {
     for (std::thread& thread : state_->threads) thread.join();
 }
 
-void Pager::want(const std::vector<TileRequest>& wanted) {
+void Pager::want(const std::vector<TileRequest>& wanted, const std::vector<TileRequest>& ahead) {
     const std::lock_guard lock(state_->mutex);
     TileKeySet before(state_->queue.begin(), state_->queue.end());
     state_->queue.clear();
@@ -289,6 +379,9 @@ void Pager::want(const std::vector<TileRequest>& wanted) {
         if (state_->wanted.insert(key).second) state_->accept(key, before.erase(key) > 0);
     }
     state_->count.cancelled += before.size();
+    state_->ahead.queue.clear();
+    state_->ahead.wanted.clear();
+    for (const TileRequest& request : ahead) state_->acceptAhead({request.layer, request.id});
     state_->dropUntaken();
     state_->reader.wake();
     if (state_->isSettled()) state_->settled.notify_all();
@@ -308,6 +401,11 @@ std::vector<LoadedTile> Pager::takeLoaded(size_t maxTiles) {
 std::vector<FailedTile> Pager::takeFailed() {
     const std::lock_guard lock(state_->mutex);
     return std::exchange(state_->failed, {});
+}
+
+std::vector<LoadedTile> Pager::takeAhead() {
+    const std::lock_guard lock(state_->mutex);
+    return std::exchange(state_->ahead.arrived, {});
 }
 
 void Pager::waitUntilSettled() {

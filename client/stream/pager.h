@@ -43,6 +43,18 @@ struct FailedTile {
     Loss loss = Loss::forGood;
 };
 
+/// What was read ahead of being wanted. Tiles, ancestors that a photo needs among them.
+struct PrefetchStatistics {
+    uint64_t tiles = 0;      ///< read
+    uint64_t bytes = 0;      ///< of these, as stored
+    uint64_t usedTiles = 0;  ///< of these, wanted later while they were still held
+    uint64_t usedBytes = 0;
+    uint64_t answered = 0;   ///< requests for what had been read ahead
+    uint64_t joined = 0;     ///< requests for what was being read ahead just then; not among the tiles
+    uint64_t cancelled = 0;  ///< requests, in favour of wanted ones or because the camera turned
+    uint64_t failed = 0;     ///< requests; not told, and not repeated for a while
+};
+
 struct PagerStatistics {
     uint64_t requested = 0;  ///< put into the IO thread's queue; what stays wanted counts once
     uint64_t delivered = 0;  ///< taken, or waiting to be
@@ -55,6 +67,7 @@ struct PagerStatistics {
     uint64_t untaken = 0;      ///< tiles that wait to be taken
     uint64_t evicted = 0;
     TileReadStatistics reads;
+    PrefetchStatistics prefetch;  ///< apart from all counts of requests above
 };
 
 /// Brings wanted tiles from a source to main memory without ever blocking the render thread: one IO thread reads in
@@ -66,11 +79,13 @@ struct PagerStatistics {
 /// want() named and were in flight then.
 /// Imagery brings its ancestors along, since its mip chain is gathered from them. A tile whose bytes are damaged is
 /// read once more; one that failed for good is not asked for again in this session, its ancestor goes on standing in.
-/// Main memory is an LRU cache under hostBudgetBytes; a tile whose descendants are held is kept as long as they are,
-/// and tiles in flight are counted before they arrive. A budget too small for what is in flight delays requests; one
-/// request (a height tile, or a photo tile with the ancestors it lacks) always proceeds, and only it may exceed the
-/// budget. Tiles delivered, taken or not, no longer count once the cache has let them go. At any time requested +
-/// hostHits = delivered + failed + cancelled + what is queued or in flight.
+/// What may be wanted soon is read when nothing wanted waits to be read, and given up for what is wanted, over a
+/// network also while it is read; it is not delivered, but held in main memory, and told for what it says of its
+/// children. Main memory is an LRU cache under hostBudgetBytes; a tile whose descendants are held is kept as long as
+/// they are, and tiles in flight are counted before they arrive. A budget too small for what is in flight delays
+/// requests; one request (a height tile, or a photo tile with the ancestors it lacks) always proceeds, and only it may
+/// exceed the budget. Tiles delivered, taken or not, no longer count once the cache has let them go. At any time
+/// requested + hostHits = delivered + failed + cancelled + what is queued or in flight.
 class Pager {
   public:
     Pager(const TileSource& source, const PagerOptions& options);
@@ -80,10 +95,13 @@ class Pager {
 
     /// States everything that is wanted now, most urgent first; replaces what was wanted before.
     /// A tile that has been taken and is wanted again is delivered again.
-    void want(const std::vector<TileRequest>& wanted);
+    /// @param ahead  what may be wanted soon, most urgent first
+    void want(const std::vector<TileRequest>& wanted, const std::vector<TileRequest>& ahead = {});
     /// What has arrived since the last call, in order of arrival, at most maxTiles of it.
     [[nodiscard]] std::vector<LoadedTile> takeLoaded(size_t maxTiles);
     [[nodiscard]] std::vector<FailedTile> takeFailed();
+    /// What has been read ahead since the last call.
+    [[nodiscard]] std::vector<LoadedTile> takeAhead();
     /// Blocks until nothing wanted is queued, being read or being decoded (all wanted have been settled).
     void waitUntilSettled();
     [[nodiscard]] PagerStatistics statistics() const;

@@ -23,7 +23,8 @@ struct TilePart {
     HeldTile tile;                 ///< once decoded, or held from the start
     bool fetched = false;          ///< this job reads it, and has reserved memory for it
     int reads = 0;
-    std::string trouble;  ///< what went wrong last
+    uint64_t storedBytes = 0;  ///< as it was read last
+    std::string trouble;       ///< what went wrong last
     [[nodiscard]] bool done() const { return tile.bytes > 0; }
     [[nodiscard]] bool lost() const { return !done() && !payload && reads >= kReads; }
     [[nodiscard]] bool toBeRead() const { return !done() && !payload && reads < kReads; }

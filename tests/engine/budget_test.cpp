@@ -113,6 +113,23 @@ TEST_F(BudgetTest, NoneIsExceededOnAFlight) {
     EXPECT_GT(uploaded, 10u);
 }
 
+TEST_F(BudgetTest, ReadsAheadOnlyWhileTheCameraMovesAndOnlyIfAllowed) {
+    for (const bool prefetch : {true, false}) {
+        EngineOptions options;
+        options.prefetch = prefetch;
+        Engine engine(*source_, shaders_, options, kWidth, kHeight);
+        (void)settle(engine, low());
+        EXPECT_EQ(engine.drawFrame(low(), false).pager.prefetch.tiles, 0u) << "it rests";
+        PrefetchStatistics ahead;
+        for (double along = 1000; along < 6000; along += 50) {
+            ahead = engine.drawFrame(low(along), false).pager.prefetch;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        EXPECT_EQ(ahead.tiles > 0, prefetch);
+        EXPECT_EQ(ahead.usedTiles + ahead.joined > 0, prefetch);
+    }
+}
+
 TEST_F(BudgetTest, AFrameUploadsNoMoreThanItsShare) {
     EngineOptions options;
     options.uploadBytesPerFrame = 2 * GpuTiles::heightUploadBytes();

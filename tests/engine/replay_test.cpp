@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -155,6 +156,22 @@ TEST_F(ReplayTest, SummarisesAndSaysWhatWasRun) {
     EXPECT_EQ(manifest->find("protocol")->numberAt("width").value(), 64);
 }
 
+TEST_F(ReplayTest, FliesByTheClockAndLingersUntilNothingLacks) {
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(replay("run", {"--real-time", "--linger", "60", "--no-statistics"}), ExitCode::ok);
+    EXPECT_GE(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 2);
+    const auto table = tableOf(own_ / "run" / "frames.csv");
+    const std::vector<std::string>& seconds = table.at("seconds");
+    for (size_t n = 1; n < seconds.size(); ++n)
+        EXPECT_GE(std::stod(seconds[n]) - std::stod(seconds[n - 1]), 0.24) << "--fps 4";
+    EXPECT_GE(std::stod(seconds.back()), 1.7) << "a tour of 2 s";
+    EXPECT_EQ(table.at("wanted").back(), "0");
+    const auto summary = Json::parse(textOf(own_ / "run" / "summary.json"));
+    EXPECT_EQ(summary->numberAt("frames").value(), static_cast<double>(seconds.size()));
+    EXPECT_GT(summary->numberAt("firstPictureSeconds").value(), 0);
+    EXPECT_TRUE(summary->find("prefetch")->numberAt("hitRate").ok());
+}
+
 TEST_F(ReplayTest, WithoutStatisticsTheirColumnsAreEmpty) {
     ASSERT_EQ(replay("run", {"--no-statistics"}), ExitCode::ok);
     const auto table = tableOf(own_ / "run" / "frames.csv");
@@ -199,6 +216,9 @@ TEST_F(ReplayTest, BadUseHasItsCodes) {
     EXPECT_EQ(replay("run", {"--warm-up", "-1"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--anisotropy", "99"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--marker", "here"}), ExitCode::usage);
+    EXPECT_EQ(replay("run", {"--prefetch", "maybe"}), ExitCode::usage);
+    EXPECT_EQ(replay("run", {"--real-time", "--wait-for-tiles"}), ExitCode::usage);
+    EXPECT_EQ(replay("run", {"--linger", "5"}), ExitCode::usage);
     EXPECT_FALSE(std::filesystem::exists(in("run")));
     EXPECT_FALSE(std::filesystem::exists(in("t.json")));
 }

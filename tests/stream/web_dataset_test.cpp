@@ -143,6 +143,23 @@ TEST_F(WebDataset, TakesBackReadsThatAreNoLongerWanted) {
     loadAll(pager);
 }
 
+TEST_F(WebDataset, GivesUpReadsAheadForWhatIsWanted) {
+    const auto web = openWebDataset(address(), kHasty);
+    Pager pager(*web, {});
+    const uint64_t before = server_.requests();
+    server_.setDelayMs(300);
+    pager.want({}, {{TileLayer::imagery, {3, 5, 2}, 1}, {TileLayer::heights, {1, 1, 1}, 1}});
+    while (server_.requests() < before + 4) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    server_.setDelayMs(0);
+    pager.want({{TileLayer::heights, {1, 0, 1}, 1}});
+    pager.waitUntilSettled();
+    EXPECT_EQ(pager.takeLoaded(10).size(), 1u);
+    EXPECT_EQ(pager.statistics().prefetch.cancelled, 2u);
+    EXPECT_EQ(pager.statistics().prefetch.tiles, 0u);
+    expectBalanced(pager.statistics());
+    loadAll(pager);
+}
+
 TEST_F(WebDataset, FetchesNothingTwiceThatTheDiskCacheHolds) {
     const TemporaryDirectory cache;
     WebOptions options = kHasty;
