@@ -14,6 +14,7 @@
 #include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
 #include "client/engine/sun_clock.h"
+#include "client/engine/upload_pace.h"
 #include "client/stream/camera_motion.h"
 
 namespace terray {
@@ -124,6 +125,7 @@ struct Engine::State {
           resident(source, shaders, slotOptions(source, options, earth), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
           targets(width, height, options.features, options.colour),
+          uploadPace(options.uploadBytesPerFrame, options.uploadShare),
           mostPending(mostPendingTiles(options.pager.hostBudgetBytes)),
           pager(source, withoutPending(options.pager)) {
         const DatasetMetadata& metadata = source.metadata();
@@ -143,6 +145,7 @@ struct Engine::State {
     [[nodiscard]] std::vector<TileRequest> tilesAhead();
     [[nodiscard]] View viewFrom(const Camera& camera) const;
     std::vector<TileKey> upload(const std::vector<TileRequest>& order, uint64_t budgetBytes);
+    void learnUploadTime();
     /// One frame's share of paging: what has arrived is uploaded within the budget, what is lacking is asked for.
     void stream();
     /// Pages until the selection lacks nothing that can be had.
@@ -167,6 +170,7 @@ struct Engine::State {
     Selection selection;
     FrameReport report;
     std::optional<EditList> newEdits;
+    UploadPace uploadPace;
     size_t mostPending;  ///< tiles that may wait for upload
     Pager pager;         // last: its threads end first
 };
@@ -212,6 +216,12 @@ std::vector<TileKey> Engine::State::upload(const std::vector<TileRequest>& order
     return uploaded;
 }
 
+void Engine::State::learnUploadTime() {
+    const auto ofPass = [this](GpuPass pass) { return report.gpuMs[static_cast<size_t>(pass)]; };
+    const double uploadMs = ofPass(GpuPass::upload) + ofPass(GpuPass::edit);
+    uploadPace.learn(uploadMs, report.uploadedBytes, std::max(report.frameMs - uploadMs, 0.0));
+}
+
 void Engine::State::note(const Uploads& uploads) {
     report.uploadedTiles += uploads.tiles;
     report.editedTiles += uploads.editedTiles;
@@ -252,7 +262,7 @@ void Engine::State::stream() {
     selectAndPin();
     const std::vector<TileRequest> order = attainable();
     resident.keepOnly(order);
-    if (!upload(order, options.uploadBytesPerFrame).empty()) selectAndPin();
+    if (!upload(order, uploadPace.bytes()).empty()) selectAndPin();
     std::vector<TileRequest> missing = notPending(attainable());
     missing.resize(std::min(missing.size(), mostPending - std::min(mostPending, resident.pendingTiles())));
     pager.want(missing, options.prefetch ? tilesAhead() : std::vector<TileRequest>());
@@ -361,6 +371,7 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
     state.report.gpuMs = state.timer.finishFrame();
     state.report.frameMs = millisecondsSince(start) - state.report.waitMs;
     state.fillReport();
+    state.learnUploadTime();
     return std::exchange(state.report, {});
 }
 

@@ -31,7 +31,9 @@ struct EngineOptions {
     EarthOptions earth;
     uint64_t gpuHeightBytes = 256ull << 20;
     uint64_t gpuImageryBytes = 256ull << 20;
-    uint64_t uploadBytesPerFrame = 16ull << 20;  ///< at least one tile is uploaded however small it is
+    // Of one frame that does not wait for tiles. At least one tile is uploaded however small these are.
+    uint64_t uploadBytesPerFrame = 16ull << 20;
+    double uploadShare = 0.5;  ///< time for uploads, pyramids among it, over the time that the rest of a frame takes
     FeatureSet
         features;  ///< imagery: set by the engine, true when the dataset has some and selection.useImagery is set
     ColourFormat colour = ColourFormat::srgb8;

@@ -136,6 +136,8 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.bytes("--gpu-memory", gpuMemory_,
                "for tiles on the GPU, half to heights and half to the photo; all to heights without a photo (512M)");
     line.bytes("--upload-budget", uploadBudget_, "of one frame, at least one tile; not while waiting for tiles (16M)");
+    line.option("--upload-share", uploadShare_, "FACTOR",
+                "time that a frame gives to uploads over what the rest of it takes, 0 to 10; at least one tile (0.5)");
     line.option("--decode-threads", decodeThreads_, "N", "0: one less than the machine's cores (0)");
     line.option("--prefetch", prefetch_, "on|off",
                 "read ahead along the camera's motion, while nothing wanted is to be read (on)");
@@ -178,6 +180,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     requireRange("--anisotropy", anisotropy_, 1, 16);
     requireRange("--exaggeration", exaggeration_, kLeastExaggeration, kGreatestExaggeration);
     requireRange("--decode-threads", static_cast<double>(decodeThreads_), 0, 1024);
+    requireRange("--upload-share", uploadShare_, 0, 10);
     requireRange("--refraction", refraction_, -5, 0.99);
     requireRange("--sun-diameter", sunDiameter_, 0, 20);
     requireRange("--shadow-rays", static_cast<double>(shadowRays_), 1, 64);
@@ -220,6 +223,7 @@ EngineOptions EngineCommandLine::options(bool datasetHasImagery) const {
     options.gpuImageryBytes = options.selection.useImagery ? gpuMemory_ / 2 : 0;
     options.gpuHeightBytes = gpuMemory_ - options.gpuImageryBytes;
     options.uploadBytesPerFrame = uploadBudget_;
+    options.uploadShare = uploadShare_;
     options.features.signalSky = signalSky_;
     options.exaggeration = exaggeration_;
     return options;
@@ -253,6 +257,7 @@ Json EngineCommandLine::toJson() const {
                         {"host-memory", hostMemory_},
                         {"gpu-memory", gpuMemory_},
                         {"upload-budget", uploadBudget_},
+                        {"upload-share", uploadShare_},
                         {"decode-threads", decodeThreads_},
                         {"prefetch", prefetch_},
                         {"cancel-reads", cancelReads_},

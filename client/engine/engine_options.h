@@ -53,6 +53,7 @@ class EngineCommandLine {
     uint64_t hostMemory_ = PagerOptions().hostBudgetBytes;
     uint64_t gpuMemory_ = EngineOptions().gpuHeightBytes + EngineOptions().gpuImageryBytes;
     uint64_t uploadBudget_ = EngineOptions().uploadBytesPerFrame;
+    double uploadShare_ = EngineOptions().uploadShare;
     int64_t decodeThreads_ = 0;
     std::string prefetch_ = "on";
     std::string cancelReads_ = "on";

@@ -113,6 +113,23 @@ TEST_F(BudgetTest, NoneIsExceededOnAFlight) {
     EXPECT_GT(uploaded, 10u);
 }
 
+TEST_F(BudgetTest, UploadsTakeTheirShareOfTheTimeOrOneTile) {
+    for (const double share : {0.0, 10.0}) {
+        EngineOptions options;
+        options.uploadShare = share;
+        Engine engine(*source_, shaders_, options, kWidth, kHeight);
+        size_t most = 0, before = 0;
+        for (size_t wanted = 1; wanted > 0;) {
+            const FrameReport report = engine.drawFrame(low(), false);
+            wanted = report.wanted;
+            if (before > 0) most = std::max(most, report.uploadedTiles);  // by then it knows what uploads cost
+            before += report.uploadedTiles;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        EXPECT_EQ(most > 1, share > 0) << share;
+    }
+}
+
 TEST_F(BudgetTest, ReadsAheadOnlyWhileTheCameraMovesAndOnlyIfAllowed) {
     for (const bool prefetch : {true, false}) {
         EngineOptions options;
@@ -133,6 +150,7 @@ TEST_F(BudgetTest, ReadsAheadOnlyWhileTheCameraMovesAndOnlyIfAllowed) {
 TEST_F(BudgetTest, AFrameUploadsNoMoreThanItsShare) {
     EngineOptions options;
     options.uploadBytesPerFrame = 2 * GpuTiles::heightUploadBytes();
+    options.uploadShare = 10;
     Engine engine(*source_, shaders_, options, kWidth, kHeight);
     uint64_t most = 0;
     FrameReport report;
