@@ -287,6 +287,7 @@ void Engine::State::waitForTiles() {
         const bool lostSome = report.failures.size() > failedBefore;
         if (!report.unreachable.empty() || (uploaded.empty() && !lostSome)) break;
     }
+    selectAndPin();  // uploads of the last round may have evicted what was drawn
     pager.want({});
 }
 

@@ -118,8 +118,8 @@ void ResidentTiles::beginFrame() {
 }
 
 void ResidentTiles::pin(const Selection& selection) {
-    pin(selection.nodes);
-    pin(selection.casters);
+    pin(selection.nodes, selection);
+    pin(selection.casters, selection);
     pinNeeded(selection);
 }
 
@@ -138,11 +138,19 @@ void ResidentTiles::pinNeeded(const Selection& selection) {
     }
 }
 
-void ResidentTiles::pin(const std::vector<DrawNode>& nodes) {
-    for (const DrawNode& node : nodes) {
-        pinnedHeights_.insert(node.heightTile);
-        if (node.imageryTile) pinnedImagery_.insert(*node.imageryTile);
-    }
+void ResidentTiles::pin(const std::vector<DrawNode>& nodes, const Selection& selection) {
+    // Up to four stand in for one coarser tile. Pinned, they could keep it out for ever.
+    const std::unordered_set<TileId> needed[] = {{selection.heightTiles.begin(), selection.heightTiles.end()},
+                                                 {selection.imageryTiles.begin(), selection.imageryTiles.end()}};
+    const auto mayGo = [&needed](TileLayer layer, const TileId& id, bool exact) {
+        return !exact && id.level > 0 && needed[static_cast<size_t>(layer)].contains(id.parent());
+    };
+    const auto heightsMayGo = [&](const DrawNode& node) {
+        return mayGo(TileLayer::heights, node.heightTile, node.heightsExact);
+    };
+    const auto imageryMayGo = [&](const DrawNode& node) {
+        return !node.imageryTile || mayGo(TileLayer::imagery, *node.imageryTile, node.imageryExact);
+    };
     const auto touchAncestors = [](TileId id, const auto& resident, const auto& touch) {
         while (id.level > 0) {
             id = id.parent();
@@ -166,8 +174,14 @@ void ResidentTiles::pin(const std::vector<DrawNode>& nodes) {
                 [&](const TileId& id) { gpu_.touchImagery(id); });
     }
     for (const DrawNode& node : nodes) {
-        gpu_.pinHeights(node.heightTile);
-        if (node.imageryTile) gpu_.pinImagery(*node.imageryTile);
+        if (!heightsMayGo(node)) {
+            pinnedHeights_.insert(node.heightTile);
+            gpu_.pinHeights(node.heightTile);
+        }
+        if (!imageryMayGo(node)) {
+            pinnedImagery_.insert(*node.imageryTile);
+            gpu_.pinImagery(*node.imageryTile);
+        }
     }
 }
 

@@ -65,7 +65,8 @@ class ResidentTiles {
     /// From now on nothing is pinned but the roots.
     void beginFrame();
     /// What a selection draws, and what it needs and has, is not evicted until the next beginFrame(); the ancestors of
-    /// it go last after that, since they are the next to stand in.
+    /// it go last after that, since they are the next to stand in. Not so what stands in for a coarser tile: select
+    /// again once something was uploaded.
     void pin(const Selection& selection);
     /// Whether every slot of a layer holds the root or a tile pinned by pin(): refinement of that layer ends here.
     [[nodiscard]] bool full(TileLayer layer) const;
@@ -77,7 +78,7 @@ class ResidentTiles {
                    GpuTimer* timer);
 
   private:
-    void pin(const std::vector<DrawNode>& nodes);
+    void pin(const std::vector<DrawNode>& nodes, const Selection& selection);
     void pinNeeded(const Selection& selection);
     void loadRoots();
     [[nodiscard]] LoadedTile readHeightRoot() const;

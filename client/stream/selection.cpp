@@ -21,6 +21,7 @@ struct Choice {
     std::optional<TileId> drawn;  ///< the deepest resident tile that covers the cell, down to what is wanted
     bool settled = false;         ///< nothing finer is wanted beneath this cell
     bool exact = false;           ///< once settled: drawn is what is wanted
+    bool finer = false;           ///< once settled: what is wanted is lacking, but all of its children are resident
 };
 
 struct Cell {
@@ -81,6 +82,8 @@ class Traversal {
     [[nodiscard]] bool heightsSuffice(const TileId& cell, Metres distance) const;
     void chooseImagery(Cell& cell, Metres distance);
     std::optional<Cell> childOf(const Cell& cell, uint32_t quadrant) const;
+    /// Whether all children of a tile that have something to show are resident.
+    bool childrenDrawable(TileLayer layer, const TileId& tile) const;
     /// Of a height error as it shows in an exaggerated picture.
     [[nodiscard]] Pixels heightError(const HeightRecord& record, Metres distance) const {
         return screenError(Metres(view_.exaggeration * record.error), distance, view_);
@@ -142,15 +145,16 @@ Shown Traversal::visit(Cell cell) {
     const Metres distance = distanceTo(seenBoxOf(cell.id, heights, tree_.tiling(), view_), view_.eye);
     chooseHeights(cell, distance);
     chooseImagery(cell, distance);
-    if (cell.heights.settled && cell.imagery.settled) return emit(cell, distance);
+    const bool finer = cell.heights.finer || cell.imagery.finer;
+    if (cell.heights.settled && cell.imagery.settled && !finer) return emit(cell, distance);
 
     // Split; where that shows nothing finer, draw the one cell instead.
     const size_t nodesBefore = result_.nodes.size(), castersBefore = result_.casters.size();
     const Shown beneath = visitChildren(cell);
     const Shown own = shownBy(cell);
-    const bool finer = beneath.heights > own.heights || beneath.imagery > own.imagery;
+    const bool finerBeneath = beneath.heights > own.heights || beneath.imagery > own.imagery;
     const bool nothing = result_.nodes.size() == nodesBefore && result_.casters.size() == castersBefore;
-    if (finer || nothing) return beneath;
+    if (finerBeneath || nothing) return beneath;
     result_.nodes.resize(nodesBefore);
     result_.casters.resize(castersBefore);
     return emit(cell, distance);
@@ -188,6 +192,11 @@ std::optional<Cell> Traversal::childOf(const Cell& cell, uint32_t quadrant) cons
     const uint32_t deepest = std::min(tree_.finestHeightLevel(), cell.heights.drawn->level + kMaxStandInLevels);
     child.ground = bounds_.ofChild(cell.ground, child.id, deepest);
     if (!child.ground[4].surface) return {};
+    if (cell.heights.finer) child.heights = {.drawn = child.id, .settled = true};
+    if (cell.imagery.finer) {
+        const bool exists = tree_.imagery(child.id)->exists;
+        child.imagery = {.drawn = exists ? child.id : cell.imagery.drawn, .settled = true};
+    }
     if (!cell.imagery.settled && !tree_.imagery(child.id)->exists) child.imagery = {.settled = true, .exact = true};
     return child;
 }
@@ -214,7 +223,28 @@ void Traversal::chooseHeights(Cell& cell, Metres distance) {
     if (cell.id.level > 0) result_.heightTiles.push_back(cell.id);
     if (!choice.settled) return;
     choice.exact = own.resident;
-    if (!choice.exact) request(TileLayer::heights, cell, standInError);
+    if (choice.exact) return;
+    request(TileLayer::heights, cell, standInError);
+    choice.finer = own.childrenKnown && childrenDrawable(TileLayer::heights, cell.id);
+}
+
+bool Traversal::childrenDrawable(TileLayer layer, const TileId& tile) const {
+    bool any = false;
+    for (uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+        const TileId child = tile.child(quadrant);
+        const auto drawable = [&any](const auto* known, bool exists) {
+            any |= exists;
+            return known != nullptr && (known->resident || !exists);
+        };
+        if (layer == TileLayer::heights) {
+            const auto* known = tree_.heights(child);
+            if (!drawable(known, known != nullptr && known->record.exists)) return false;
+        } else {
+            const auto* known = tree_.imagery(child);
+            if (!drawable(known, known != nullptr && known->exists)) return false;
+        }
+    }
+    return any;
 }
 
 void Traversal::chooseImagery(Cell& cell, Metres distance) {
@@ -234,7 +264,9 @@ void Traversal::chooseImagery(Cell& cell, Metres distance) {
     choice.settled = true;
     choice.exact = own != nullptr && own->resident;
     if (cell.id.level > 0) result_.imageryTiles.push_back(cell.id);
-    if (!choice.exact) request(TileLayer::imagery, cell, standInTexel);
+    if (choice.exact) return;
+    request(TileLayer::imagery, cell, standInTexel);
+    choice.finer = own != nullptr && own->childrenKnown && childrenDrawable(TileLayer::imagery, cell.id);
 }
 
 Shown Traversal::emit(const Cell& cell, Metres distance) {

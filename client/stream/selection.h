@@ -21,7 +21,8 @@ namespace terray {
 // independently: a cell may go on splitting for its photo while its heights stay those of an ancestor.
 //
 // A finer tile that is wanted but not resident is put on the wanted list; meanwhile the nearest resident ancestor
-// stands in for it with a sub-rectangle. When none of the four children has anything finer to show, the cell is not
+// stands in for it with a sub-rectangle, or its children do where all of them are resident, as after the camera has
+// moved away. When none of the four children has anything finer to show, the cell is not
 // split. A child whose record says that it has no surface is not drawn: there is nothing there.
 //
 // The box of a cell reaches down to the lowest finest sample that may lie in it or in the eight squares of its size

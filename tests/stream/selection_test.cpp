@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -347,6 +348,35 @@ TEST(Selection, AMissingTileIsStoodInForByItsNearestResidentAncestor) {
         EXPECT_EQ(node.heightTile,
                   missing.covers(node.cell) ? missing.parent() : node.cell.ancestor(node.cell.level - 2));
     }
+}
+
+TEST(Selection, AMissingTileIsStoodInForByItsChildrenWhereAllAreResident) {
+    const FakeDataset& dataset = hillyDataset();
+    TileTree tree = everything(dataset);
+    // The middle level is fine enough, and the root is not.
+    const View view = viewOf({.position = {2000, 0, 3000}, .pitch = radiansFromDegrees(-30)}, 400, 250);
+    const double rootError = select(rootsOnly(dataset), view, {}).nodes.at(0).screenError;
+    const SelectionOptions options{.tolerance = Pixels(0.95 * rootError), .useImagery = false};
+    const Selection ideal = select(tree, view, options);
+    const auto middle = std::find_if(ideal.nodes.begin(), ideal.nodes.end(),
+                                     [](const auto& node) { return node.heightTile.level == 1; });
+    ASSERT_NE(middle, ideal.nodes.end());
+    const TileId missing = middle->heightTile;
+    tree.setHeightsResident(missing, false);
+    const auto drawnThere = [&] {
+        std::set<TileId> drawn;
+        const Selection selection = select(tree, view, options);
+        EXPECT_EQ(selection.heightTiles, ideal.heightTiles) << "what is needed stays the same";
+        EXPECT_EQ(selection.wanted.size(), 1u);
+        for (const DrawNode& node : selection.nodes) {
+            EXPECT_EQ(node.heightsExact, !missing.covers(node.cell));
+            if (missing.covers(node.cell)) drawn.insert(node.heightTile);
+        }
+        return drawn;
+    };
+    for (const TileId& tile : drawnThere()) EXPECT_EQ(tile.parent(), missing);
+    tree.setHeightsResident(missing.child(2), false);
+    EXPECT_EQ(drawnThere(), std::set<TileId>{TileId{}}) << "one of the children lacks";
 }
 
 TEST(Selection, AMissingMiddleLevelIsNeitherNeededNorAskedFor) {
