@@ -117,7 +117,7 @@ void EngineCommandLine::declare(CommandLine& line) {
     line.option("--tolerance", tolerance_, "PIXELS", "largest projected error of drawn heights (2/3)");
     line.option(
         "--lod-distance", lodDistance_, "SAMPLES",
-        "of heights by distance in place of --tolerance, as paper 000 has it: the finest up to so many of their "
+        "of heights by distance in place of a tolerance, as paper 000 has it: the finest up to so many of their "
         "samples away, half as fine at each doubling");
     line.option("--imagery-tolerance", imageryTolerance_, "PIXELS", "largest projected side of a photo's texel (1)");
     line.flag("--no-imagery", noImagery_, "ignore the dataset's photo");
