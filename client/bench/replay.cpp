@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -34,6 +33,8 @@ struct ReplayOptions {
     int width = 1280;
     int height = 720;
     double framesPerSecond = 30;
+    bool rateGiven = false;
+    bool atKeys = false;
     int64_t warmUpFrames = 3;
     bool pictures = false;
     bool waitForTiles = false;
@@ -53,7 +54,9 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
     line.option("--out", options.out, "DIR", "for frames.csv, steps.csv, summary.json, manifest.json and frames/")
         .required();
     line.size("--size", options.width, options.height, "of a frame in pixels (1280x720)");
-    line.option("--fps", options.framesPerSecond, "N", "frames to a second of the flight (30)");
+    line.option("--fps", options.framesPerSecond, "N", "frames to a second of the flight (30)")
+        .given(options.rateGiven);
+    line.flag("--at-keys", options.atKeys, "a frame at each key instead: of a recorded flight, the pictures it was");
     line.flag("--frames", options.pictures, "write each frame as PNG, outside of the times");
     line.flag("--wait-for-tiles", options.waitForTiles,
               "each frame waits until all of its tiles are loaded: the same pictures on every machine");
@@ -70,12 +73,16 @@ bool parse(ReplayOptions& options, const std::vector<std::string>& arguments) {
     if (!line.parse(arguments)) return false;
     if (!(options.framesPerSecond > 0 && options.framesPerSecond <= 10000))
         throw Error(ExitCode::usage, "--fps: expected a number above 0, at most 10000");
+    if (options.atKeys && options.rateGiven)
+        throw Error(ExitCode::usage, "found --fps and --at-keys, expected one of them");
     if (options.warmUpFrames < 0 || options.warmUpFrames > 10000)
         throw Error(ExitCode::usage, "--warm-up: expected 0 to 10000 frames");
     if (options.realTime && options.waitForTiles)
         throw Error(ExitCode::usage, "--real-time: found --wait-for-tiles, too; a clock waits for no tile");
     if (!(options.lingerSeconds >= 0 && options.lingerSeconds <= 3600))
         throw Error(ExitCode::usage, "--linger: expected 0 to 3600 seconds");
+    if (options.realTime && options.atKeys)
+        throw Error(ExitCode::usage, "found --real-time and --at-keys, expected one of them");
     if (options.lingerSeconds > 0 && !options.realTime)
         throw Error(ExitCode::usage, "--linger: expected --real-time with it");
     if (options.pictures && !TERRAY_WITH_OUTPUT)
@@ -93,10 +100,8 @@ EngineOptions engineOptions(const ReplayOptions& options, const TileSource& sour
     return engine;
 }
 
-/// Frame n is at n / rate: the last one is the last that does not lie beyond the flight's end.
-size_t frameCount(const Flight& flight, double framesPerSecond) {
-    constexpr double kSlack = 1e-6;  // of a frame: a flight of 10 s at 30 a second has its frame 300
-    return static_cast<size_t>(std::floor(flight.seconds() * framesPerSecond + kSlack)) + 1;
+size_t frameCount(const ReplayOptions& options, const Flight& flight) {
+    return options.atKeys ? flight.keys.size() : frameCount(flight, options.framesPerSecond);
 }
 
 /// One flight over one dataset, from the first warm-up frame to the last line of the table.
@@ -158,10 +163,11 @@ class Replay {
     }
 
     void flyFrameByFrame() {
-        const size_t frames = frameCount(flight_, options_.framesPerSecond);
+        const size_t frames = frameCount(options_, flight_);
         ProgressBar progress(frames);
         while (frames_ < frames) {
-            fly(static_cast<double>(frames_) / options_.framesPerSecond);
+            fly(options_.atKeys ? flight_.keys[frames_].seconds
+                                : static_cast<double>(frames_) / options_.framesPerSecond);
             progress.show(frames_);
         }
     }
@@ -249,7 +255,7 @@ class Replay {
 Json protocolOf(const ReplayOptions& options) {
     return Json::Object{{"width", options.width},
                         {"height", options.height},
-                        {"fps", options.framesPerSecond},
+                        {"fps", options.atKeys ? Json("at keys") : Json(options.framesPerSecond)},
                         {"waitForTiles", options.waitForTiles},
                         {"realTime", options.realTime},
                         {"lingerSeconds", options.lingerSeconds},

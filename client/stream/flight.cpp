@@ -114,6 +114,15 @@ Json keyToJson(const FlightKey& key, const Projection* projection) {
     return json;
 }
 
+/// Degrees and radians are grids of different fineness; going there and back settles within three rounds.
+Radians settled(Radians angle) {
+    for (;;) {
+        const Radians next = radiansFromDegrees(degreesFromRadians(angle));
+        if (next == angle) return angle;
+        angle = next;
+    }
+}
+
 /// A number of a key and where it goes.
 struct Member {
     const char* name;
@@ -123,9 +132,9 @@ struct Member {
 };
 
 Result<FlightKey> keyFromJson(const Json& json) {
-    Member members[] = {{"seconds", 0, 1e9},     {"x_m", -1e9, 1e9},         {"y_m", -1e9, 1e9},
-                        {"height_m", -1e9, 1e9}, {"heading_deg", -1e6, 1e6}, {"pitch_deg", -90, 90},
-                        {"fov_deg", 0.001, 179}};
+    Member members[] = {
+        {"seconds", 0, kMostFlightSeconds}, {"x_m", -1e9, 1e9},     {"y_m", -1e9, 1e9},     {"height_m", -1e9, 1e9},
+        {"heading_deg", -1e6, 1e6},         {"pitch_deg", -90, 90}, {"fov_deg", 0.001, 179}};
     for (Member& member : members) {
         const auto value = json.numberAt(member.name);
         if (!value) return value.failure();
@@ -153,6 +162,19 @@ Camera Flight::at(double seconds) const {
     if (seconds == previous->seconds) return previous->camera;
     const double share = (seconds - previous->seconds) / (next->seconds - previous->seconds);
     return onSegment(keys, static_cast<size_t>(previous - keys.begin()), share);
+}
+
+size_t frameCount(const Flight& flight, double framesPerSecond) {
+    TERRAY_CHECK_OP(framesPerSecond, >, 0.0);
+    constexpr double kSlack = 1e-6;  // of a frame: a flight of 10 s at 30 a second has its frame 300
+    return static_cast<size_t>(std::floor(flight.seconds() * framesPerSecond + kSlack)) + 1;
+}
+
+Camera asWritten(const Camera& camera) {
+    return {.position = camera.position,
+            .heading = settled(camera.heading),
+            .pitch = settled(camera.pitch),
+            .verticalFov = settled(camera.verticalFov)};
 }
 
 Json toJson(const Flight& flight, const Projection* projection) {

@@ -9,6 +9,9 @@
 
 namespace terray {
 
+/// Later than this no key of a flight is.
+inline constexpr double kMostFlightSeconds = 1e9;
+
 /// A camera at a time.
 struct FlightKey {
     double seconds = 0;  ///< from the flight's start, ascending
@@ -29,10 +32,17 @@ struct Flight {
     [[nodiscard]] Camera at(double seconds) const;
 };
 
+/// Pictures of a flight at a fixed rate: frame n is at n / rate, and the last one is the last that does not lie beyond
+/// the end. @param framesPerSecond  > 0
+[[nodiscard]] size_t frameCount(const Flight& flight, double framesPerSecond);
+
 /// JSON as documented in client/README.md: positions in dataset coordinates, longitude, latitude and degrees beside
 /// them when a projection is given (they are for people; reading takes the dataset coordinates).
 [[nodiscard]] Json toJson(const Flight& flight, const Projection* projection);
 [[nodiscard]] Result<Flight> flightFromJson(const Json& json);
+/// The nearest pose that such JSON gives back bit by bit: angles, which it holds in degrees, move by 1e-15 of
+/// themselves at most. Pitch must be -pi/2 .. pi/2.
+[[nodiscard]] Camera asWritten(const Camera& camera);
 /// Throws Error(input) when the file is missing or no flight, Error(output) when it cannot be written.
 [[nodiscard]] Flight loadFlight(const std::filesystem::path& path);
 void saveFlight(const Flight& flight, const std::filesystem::path& path, const Projection* projection);

@@ -7,7 +7,7 @@
 
 #include "client/bench/bench.h"
 #include "client/bench/frame_table.h"
-#include "client/stream/flight.h"
+#include "client/stream/flight_recorder.h"
 #include "tests/common/temporary_directory.h"
 #include "tests/support/analytic_dataset.h"
 
@@ -131,6 +131,25 @@ TEST_F(ReplayTest, TwoRunsDifferOnlyInTimes) {
     }
 }
 
+TEST_F(ReplayTest, AtKeysDrawsEachRecordedPoseAtItsTime) {
+    FlightRecorder recorder;
+    const Flight standard = loadFlight(tour());
+    for (const double seconds : {0.0, 0.31, 0.32, 1.1, 2.0}) recorder.record(70 + seconds, standard.at(seconds));
+    const Flight recorded = recorder.flight("hills", "test");
+    saveFlight(recorded, in("recorded.json"), nullptr);
+    ASSERT_EQ(bench({"replay", dataset(), "--flight", in("recorded.json"), "--size", "64x48", "--out", in("run"),
+                     "--at-keys", "--wait-for-tiles"}),
+              ExitCode::ok);
+    const auto table = tableOf(own_ / "run" / "frames.csv");
+    ASSERT_EQ(table.at("seconds").size(), recorded.keys.size());
+    for (size_t n = 0; n < recorded.keys.size(); ++n) {
+        const FlightKey& key = recorded.keys[n];
+        EXPECT_NEAR(std::stod(table.at("seconds")[n]), key.seconds, 1e-6);
+        EXPECT_NEAR(std::stod(table.at("camera_x")[n]), key.camera.position.x, 1e-3);
+        EXPECT_NEAR(std::stod(table.at("pitch_deg")[n]), degreesFromRadians(key.camera.pitch), 1e-4);
+    }
+}
+
 TEST_F(ReplayTest, SummarisesAndSaysWhatWasRun) {
     ASSERT_EQ(replay("run", {"--tolerance", "2", "--no-imagery"}), ExitCode::ok);
     const auto summary = Json::parse(textOf(own_ / "run" / "summary.json"));
@@ -212,7 +231,8 @@ TEST_F(ReplayTest, BadUseHasItsCodes) {
     EXPECT_EQ(bench({"tour", dataset()}), ExitCode::usage);
     EXPECT_EQ(bench({"tour", dataset(), "--out", in("t.json"), "--seconds", "0"}), ExitCode::usage);
     EXPECT_EQ(bench({"replay", dataset(), "--out", in("run")}), ExitCode::usage);
-    EXPECT_EQ(replay("run", {"--fps", "0"}), ExitCode::usage);
+    EXPECT_EQ(replay("run", {"--at-keys"}), ExitCode::usage) << "replay() gives --fps, too";
+    EXPECT_EQ(bench({"replay", dataset(), "--flight", tour(), "--out", in("run"), "--fps", "0"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--warm-up", "-1"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--anisotropy", "99"}), ExitCode::usage);
     EXPECT_EQ(replay("run", {"--marker", "here"}), ExitCode::usage);
