@@ -27,14 +27,16 @@ PROJECT = {
     "client/render": ["common", "shaders/interop.h"],
     "client/overlay": ["common", "client/stream"],
     "client/navigation": ["common", "client/stream"],
+    "client/exchange": ["common", "client/stream", "client/overlay"],
     "client/output": ["common"],
     "client/engine": ["common", "client/stream", "client/overlay", "client/render"],
     "client/view": [
-        "common", "client/stream", "client/navigation", "client/render", "client/output", "client/engine",
+        "common", "client/stream", "client/navigation", "client/exchange", "client/render", "client/output",
+        "client/engine",
     ],
     "client/bench": [
-        "common", "common/reference", "shaders/math", "client/stream", "client/render", "client/output",
-        "client/engine",
+        "common", "common/reference", "shaders/math", "client/stream", "client/exchange", "client/render",
+        "client/output", "client/engine",
     ],
 }
 PROJECT["tests"] = list(PROJECT)  # a test may look at everything
@@ -59,7 +61,7 @@ FOREIGN = {
     "OpenEXR": (r"(OpenEXR|Imath)/.*|(Imf|Imath|Iex|half)\w*\.h", {"client/output": MANY}),
     "stb": (r"(stb/)?stb_\w+\.h", {"preprocess": 1}),
     "libsquish": (r"squish\.h", {}),
-    "pugixml": (r"pugixml\.hpp", {"client/overlay": 1}),
+    "pugixml": (r"pugixml\.hpp", {"client/overlay": 1, "client/exchange": 1}),
     "Boost": (r"boost/.*", {"server": MANY}),
     "libcurl": (r"curl/.*", {"client/stream": 1}),
     "EGL": (r"(EGL|KHR)/.*|epoxy/egl\w*\.h", {"client/render": 1}),

@@ -8,6 +8,8 @@ namespace {
 constexpr const char* kUsage =
     "usage: terray-bench COMMAND ...\n"
     "  tour DATASET --out FLIGHT.json      writes the dataset's standard flight\n"
+    "  convert DATASET --flight FILE --out FILE\n"
+    "                                      flights and tracks from and to JSON, KML, GPX, IGC\n"
     "  replay DATASET --flight FLIGHT.json --out DIR\n"
     "                                      flies it at a fixed rate and writes what each frame cost\n"
     "  error DATASET --flight FLIGHT.json --out DIR\n"
@@ -26,12 +28,13 @@ ExitCode runBench(const std::vector<std::string>& arguments) {
     }
     const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
     if (command == "tour") return runTour(rest);
+    if (command == "convert") return runConvert(rest);
     if (command == "replay") return runReplay(rest);
     if (command == "error") return runError(rest);
     if (command == "compare") return runCompare(rest);
     if (command == "image-error") return runImageError(rest);
     const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
-    throw Error(ExitCode::usage, found + ", expected tour, replay, error, compare or image-error (--help tells more)");
+    throw Error(ExitCode::usage, found + ", expected tour, convert, replay, error, compare or image-error (--help tells more)");
 }
 
 }  // namespace terray

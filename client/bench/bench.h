@@ -14,6 +14,9 @@ ExitCode runBench(const std::vector<std::string>& arguments);
 /// `terray-bench tour`: writes the dataset's standard flight.
 ExitCode runTour(const std::vector<std::string>& arguments);
 
+/// `terray-bench convert`: flights from and to KML, GPX and IGC; client/README.md, "Other programs' flights".
+ExitCode runConvert(const std::vector<std::string>& arguments);
+
 /// `terray-bench replay`: flies a flight frame by frame at a fixed rate and writes what each frame cost. The files are
 /// documented in client/README.md, "Replay output".
 ExitCode runReplay(const std::vector<std::string>& arguments);

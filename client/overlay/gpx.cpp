@@ -1,11 +1,13 @@
 // The only door to pugixml.
+#include <chrono>
 #include <string>
 
 #include "client/overlay/track.h"
 #if TERRAY_WITH_TRACKS
 #include <pugixml.hpp>
 
-#include "common/parse_number.h"
+#include "client/overlay/xml_names.h"
+#include "common/utc_time.h"
 #endif
 
 namespace terray {
@@ -14,20 +16,16 @@ namespace terray {
 
 namespace {
 
-/// An element's name without its namespace's prefix.
-std::string_view localName(const pugi::xml_node& element) {
-    const std::string_view name = element.name();
-    const size_t colon = name.find(':');
-    return colon == std::string_view::npos ? name : name.substr(colon + 1);
-}
-
-/// A decimal of XML Schema: blanks around it and a plus before it are allowed.
-std::optional<double> parseDecimal(std::string_view text) {
-    const size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos) return {};
-    text = text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-    if (text.starts_with('+')) text.remove_prefix(1);
-    return parseNumber(text);
+/// Seconds since 1970; decimals beyond the third do not matter.
+std::optional<double> parseTime(std::string text) {
+    const size_t point = text.find('.');
+    if (point != std::string::npos) {
+        const size_t end = std::min(text.find_first_not_of("0123456789", point + 1), text.size());
+        if (end > point + 4) text.erase(point + 4, end - point - 4);
+    }
+    const auto time = parseUtcTime(text);
+    if (!time) return {};
+    return std::chrono::duration<double>(time->time_since_epoch()).count();
 }
 
 Result<double> parseAngle(const pugi::xml_node& point, const char* attribute, double most) {
@@ -47,7 +45,8 @@ Result<TrackPoint> parsePoint(const pugi::xml_node& point) {
     if (!longitude) return longitude.failure();
     TrackPoint result{.place = {.longitude = *longitude, .latitude = *latitude}, .height = {}};
     for (const pugi::xml_node& child : point.children()) {
-        if (localName(child) != "ele") continue;
+        if (localName(child.name()) == "time") result.seconds = parseTime(child.text().get());
+        if (localName(child.name()) != "ele") continue;
         result.height = parseDecimal(child.text().get());
         constexpr double kMost = 1e8;  // metres: beyond any map of the earth
         if (!result.height || std::abs(*result.height) > kMost)
@@ -60,7 +59,7 @@ Result<TrackPoint> parsePoint(const pugi::xml_node& point) {
 Result<void> addLine(const pugi::xml_node& parent, std::string_view pointName, Track& track) {
     std::vector<TrackPoint> line;
     for (const pugi::xml_node& child : parent.children()) {
-        if (localName(child) != pointName) continue;
+        if (localName(child.name()) != pointName) continue;
         const auto point = parsePoint(child);
         if (!point)
             return Failure{"at byte " + std::to_string(child.offset_debug()) + " a point's " + point.failure().message};
@@ -72,7 +71,7 @@ Result<void> addLine(const pugi::xml_node& parent, std::string_view pointName, T
 
 Result<void> addTrack(const pugi::xml_node& element, Track& track) {
     for (const pugi::xml_node& segment : element.children()) {
-        if (localName(segment) != "trkseg") continue;
+        if (localName(segment.name()) != "trkseg") continue;
         if (auto added = addLine(segment, "trkpt", track); !added) return added;
     }
     return {};
@@ -87,13 +86,13 @@ Result<Track> parseGpx(std::string_view bytes) {
         return Failure{"at byte " + std::to_string(parsed.offset) + " it is no XML: " + parsed.description() +
                        "; the file is cut short or damaged"};
     const pugi::xml_node root = document.document_element();
-    if (localName(root) != "gpx")
+    if (localName(root.name()) != "gpx")
         return Failure{"its root element is <" + std::string(root.name()) + ">, expected <gpx>"};
     Track track;
     for (const pugi::xml_node& child : root.children()) {
         Result<void> added;
-        if (localName(child) == "trk") added = addTrack(child, track);
-        if (localName(child) == "rte") added = addLine(child, "rtept", track);
+        if (localName(child.name()) == "trk") added = addTrack(child, track);
+        if (localName(child.name()) == "rte") added = addLine(child, "rtept", track);
         if (!added) return added.failure();
     }
     if (track.lines.empty()) return Failure{"it holds no point of a track or route (trkpt, rtept)"};

@@ -21,6 +21,8 @@ class GroundHeights {
     /// the GPU does it (EditedGround). None where there is no surface.
     /// Throws Error(dataset) when a tile cannot be read.
     [[nodiscard]] std::optional<double> at(glm::dvec2 place);
+    /// No sample of the dataset, as it is stored, lies lower; metres.
+    [[nodiscard]] double lowest() const { return source_.metadata().minHeight; }
 
   private:
     [[nodiscard]] HeightTile read(const TileId& id) const;

@@ -27,6 +27,14 @@ std::optional<double> parseAngle(std::string_view text, size_t degreeDigits, cha
     return side == positive ? angle : -angle;
 }
 
+/// Seconds of the day, "101230".
+std::optional<double> parseTime(std::string_view text) {
+    const auto hours = parseDigits(text.substr(0, 2)), minutes = parseDigits(text.substr(2, 2)),
+               seconds = parseDigits(text.substr(4, 2));
+    if (!hours || !minutes || !seconds || *hours > 23 || *minutes > 59 || *seconds > 59) return {};
+    return 3600 * *hours + 60 * *minutes + *seconds;
+}
+
 /// Five characters of metres; the first may be a minus.
 std::optional<int> parseHeight(std::string_view text) {
     const bool negative = text.front() == '-';
@@ -36,6 +44,7 @@ std::optional<int> parseHeight(std::string_view text) {
 }
 
 // Columns of a B record: B HHMMSS DDMMmmmN DDDMMmmmE V PPPPP GGGGG
+constexpr size_t kTime = 1;
 constexpr size_t kLatitude = 7;
 constexpr size_t kLongitude = 15;
 constexpr size_t kValidity = 24;
@@ -47,6 +56,8 @@ Result<TrackPoint> parseFix(std::string_view line) {
     if (line.size() < kFixLength)
         return Failure{"has " + std::to_string(line.size()) + " characters, expected at least " +
                        std::to_string(kFixLength) + "; the file is cut short or damaged"};
+    const auto time = parseTime(line.substr(kTime, 6));
+    if (!time) return Failure{"has time \"" + std::string(line.substr(kTime, 6)) + "\", expected as 235959"};
     const auto latitude = parseAngle(line.substr(kLatitude, 8), 2, 'N', 'S', 90);
     if (!latitude)
         return Failure{"has latitude \"" + std::string(line.substr(kLatitude, 8)) + "\", expected as 4612345N"};
@@ -60,7 +71,7 @@ Result<TrackPoint> parseFix(std::string_view line) {
     const auto height = parseHeight(line.substr(column, 5));
     if (!height)
         return Failure{"has height \"" + std::string(line.substr(column, 5)) + "\", expected as 01234 or -0012"};
-    return TrackPoint{.place = {.longitude = *longitude, .latitude = *latitude}, .height = *height};
+    return TrackPoint{.place = {.longitude = *longitude, .latitude = *latitude}, .height = *height, .seconds = time};
 }
 
 }  // namespace
@@ -78,6 +89,10 @@ Result<Track> parseIgc(std::string_view bytes) {
         const auto point = parseFix(line);
         if (!point) return Failure{"line " + std::to_string(number) + " " + point.failure().message};
         points.push_back(*point);
+        // The clock has no date: a flight over midnight UTC goes on in the next day.
+        constexpr double kDay = 86400;
+        if (points.size() > 1)
+            while (*points.back().seconds < *points.end()[-2].seconds - kDay / 2) *points.back().seconds += kDay;
     }
     if (points.empty()) return Failure{"it holds no fix (B record)"};
     return Track{{std::move(points)}};

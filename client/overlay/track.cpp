@@ -14,7 +14,9 @@ Error refusal(const std::filesystem::path& path, const std::string& why) {
     return {ExitCode::input, "cannot read track " + path.string() + ": " + why};
 }
 
-std::string readWhole(const std::filesystem::path& path) {
+}  // namespace
+
+std::string readTrackFile(const std::filesystem::path& path) {
     std::error_code failed;
     const uint64_t size = std::filesystem::file_size(path, failed);
     if (failed) throw refusal(path, failed.message());
@@ -27,10 +29,8 @@ std::string readWhole(const std::filesystem::path& path) {
     return text;
 }
 
-}  // namespace
-
 Track readTrack(const std::filesystem::path& path) {
-    const std::string text = readWhole(path);
+    const std::string text = readTrackFile(path);
     std::string_view content = text;
     if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
     content.remove_prefix(std::min(content.find_first_not_of(" \t\r\n"), content.size()));

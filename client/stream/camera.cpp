@@ -70,20 +70,6 @@ Result<double> parseField(std::string_view text, const Field& field) {
     return value;
 }
 
-/// Where a place of the text lies in the plane, and how far true north is turned from the y axis there.
-struct Plane {
-    glm::dvec2 position{0};
-    Radians north;
-};
-
-Result<Plane> planeOf(LonLat place, const Projection& projection) {
-    const auto position = projection.plane(place);
-    if (!position) return position.failure();
-    const auto north = projection.gridHeadingOfNorth(*position);
-    if (!north) return north.failure();
-    return Plane{*position, *north};
-}
-
 void append(std::string& text, double value, int decimals) {
     std::array<char, 400> digits{};  // the longest fixed double has 309 digits before the point
     const auto [end, error] =
@@ -91,6 +77,13 @@ void append(std::string& text, double value, int decimals) {
     TERRAY_CHECK(error == std::errc());
     if (!text.empty()) text += ',';
     text.append(digits.data(), end);
+}
+
+Camera cameraIn(glm::dvec2 plane, Radians north, const GeographicCamera& camera) {
+    return {.position = {plane, camera.height},
+            .heading = normalised(radiansFromDegrees(camera.heading) + north),
+            .pitch = radiansFromDegrees(camera.pitch),
+            .verticalFov = radiansFromDegrees(camera.fov)};
 }
 
 }  // namespace
@@ -128,6 +121,27 @@ Camera framing(Camera camera, const glm::dvec3& low, const glm::dvec3& high, dou
     return camera;
 }
 
+Result<Camera> cameraFrom(const GeographicCamera& camera, const Projection& projection) {
+    const auto plane = projection.plane(camera.place);
+    if (!plane) return plane.failure();
+    const auto north = projection.gridHeadingOfNorth(*plane);
+    if (!north) return north.failure();
+    return cameraIn(*plane, *north, camera);
+}
+
+Result<GeographicCamera> geographicCamera(const Camera& camera, const Projection& projection) {
+    const glm::dvec2 plane(camera.position);
+    const auto place = projection.lonLat(plane);
+    if (!place) return Failure{"cannot tell longitude and latitude: " + place.failure().message};
+    const auto north = projection.gridHeadingOfNorth(plane);
+    if (!north) return Failure{"cannot tell where north is: " + north.failure().message};
+    return GeographicCamera{.place = *place,
+                            .height = camera.position.z,
+                            .heading = degreesFromRadians(normalised(camera.heading - *north)),
+                            .pitch = degreesFromRadians(camera.pitch),
+                            .fov = degreesFromRadians(camera.verticalFov)};
+}
+
 Result<Camera> parseCamera(const std::string& text, const Projection* projection) {
     const auto parts = splitAtCommas(text);
     if (parts.size() != 5 && parts.size() != 6)
@@ -142,41 +156,36 @@ Result<Camera> parseCamera(const std::string& text, const Projection* projection
         if (!value) return value.failure();
         values[i] = *value;
     }
-    Plane plane{{values[0], values[1]}, Radians(0)};
-    if (projection) {
-        const auto found = planeOf({values[0], values[1]}, *projection);
-        if (!found) return Failure{"camera: cannot place \"" + text + "\": " + found.failure().message};
-        plane = *found;
-    }
-    return Camera{
-        .position = {plane.position.x, plane.position.y, values[2]},
-        .heading = normalised(radiansFromDegrees(values[3]) + plane.north),
-        .pitch = radiansFromDegrees(values[4]),
-        .verticalFov = radiansFromDegrees(values[5]),
-    };
+    const GeographicCamera given{.place = {values[0], values[1]},
+                                 .height = values[2],
+                                 .heading = values[3],
+                                 .pitch = values[4],
+                                 .fov = values[5]};
+    if (!projection) return cameraIn({values[0], values[1]}, Radians(0), given);
+    auto camera = cameraFrom(given, *projection);
+    if (!camera) return Failure{"camera: cannot place \"" + text + "\": " + camera.failure().message};
+    return camera;
 }
 
 Result<std::string> formatCamera(const Camera& camera, const Projection* projection) {
-    // 1e-9 degrees are 0.1 mm on the ground.
-    std::string text;
-    Radians north;
+    GeographicCamera told{.place = {camera.position.x, camera.position.y},
+                          .height = camera.position.z,
+                          .heading = degreesFromRadians(normalised(camera.heading)),
+                          .pitch = degreesFromRadians(camera.pitch),
+                          .fov = degreesFromRadians(camera.verticalFov)};
     if (projection) {
-        const glm::dvec2 position(camera.position);
-        const auto place = projection->lonLat(position);
-        if (!place) return Failure{"camera: cannot tell longitude and latitude: " + place.failure().message};
-        const auto turned = projection->gridHeadingOfNorth(position);
-        if (!turned) return Failure{"camera: cannot tell where north is: " + turned.failure().message};
-        north = *turned;
-        append(text, place->longitude, 9);
-        append(text, place->latitude, 9);
-    } else {
-        append(text, camera.position.x, 4);
-        append(text, camera.position.y, 4);
+        const auto geographic = geographicCamera(camera, *projection);
+        if (!geographic) return Failure{"camera: " + geographic.failure().message};
+        told = *geographic;
     }
-    append(text, camera.position.z, 4);
-    append(text, degreesFromRadians(normalised(camera.heading - north)), 8);
-    append(text, degreesFromRadians(camera.pitch), 8);
-    append(text, degreesFromRadians(camera.verticalFov), 8);
+    const int decimals = projection ? 9 : 4;  // 1e-9 degrees are 0.1 mm on the ground
+    std::string text;
+    append(text, told.place.longitude, decimals);
+    append(text, told.place.latitude, decimals);
+    append(text, told.height, 4);
+    append(text, told.heading, 8);
+    append(text, told.pitch, 8);
+    append(text, told.fov, 8);
     return text;
 }
 

@@ -31,6 +31,19 @@ struct Camera {
 /// @param share      above 0; up to 1 the box is seen whole, above it the nearest corners lie outside
 [[nodiscard]] Camera framing(Camera camera, const glm::dvec3& low, const glm::dvec3& high, double aspect, double share);
 
+/// A camera as it is placed on the earth: degrees, heading from TRUE north, height above the dataset's vertical datum.
+struct GeographicCamera {
+    LonLat place;
+    double height = 0;   ///< metres
+    double heading = 0;  ///< 0 .. 360 where it is computed
+    double pitch = 0;
+    double fov = 45;  ///< vertical
+};
+
+/// Fail where the projection has no answer.
+[[nodiscard]] Result<Camera> cameraFrom(const GeographicCamera& camera, const Projection& projection);
+[[nodiscard]] Result<GeographicCamera> geographicCamera(const Camera& camera, const Projection& projection);
+
 /// A camera as people write it: "lon,lat,height_m,heading_deg,pitch_deg[,fov_deg]", heading from TRUE north. With no
 /// `projection` (a plain image, or a build without PROJ) the first two numbers are the dataset's x and y in metres and
 /// heading counts from the y axis. Fails on anything but five or six finite numbers in their ranges, naming the

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "client/stream/camera.h"
@@ -47,13 +49,28 @@ struct Flight {
 [[nodiscard]] Flight loadFlight(const std::filesystem::path& path);
 void saveFlight(const Flight& flight, const std::filesystem::path& path, const Projection* projection);
 
-/// A standard flight derived from a dataset's extent and heights, so that runs on one dataset compare: an overview from
-/// outside with all of the ground across a 16:9 picture, a descent, a low pass over rough ground looking ahead, a turn,
-/// a climb, a look straight down, the dataset's edge from low height, a sweep of the horizon. Ground without large
-/// holes and at most twice as long as wide fills at least 15 % of such a picture at any time. The camera stays above
-/// the ground it flies over by a clearance taken from the data: at least 0.6 % of the extent (checked 30 times a second
-/// of the flight). `dataset` is left empty for the caller to name it. Reads up to five coarse tiles; throws
-/// Error(dataset) when one is damaged. @param seconds  > 0
-[[nodiscard]] Flight standardTour(const TileSource& source, double seconds);
+/// Standard flights; client/README.md tells what each is for.
+enum class TourKind { standard, takeOff, lowPass, climb, lookDown, horizonSweep, fastDash };
+
+/// A standard flight's name on the command line.
+struct TourKindName {
+    TourKind kind;
+    std::string_view name;
+};
+inline constexpr TourKindName kTourKinds[] = {
+    {TourKind::standard, "standard"},  {TourKind::takeOff, "take-off"},   {TourKind::lowPass, "low-pass"},
+    {TourKind::climb, "climb"},        {TourKind::lookDown, "look-down"}, {TourKind::horizonSweep, "horizon-sweep"},
+    {TourKind::fastDash, "fast-dash"},
+};
+
+/// A flight derived from a dataset's extent and heights, so that runs on one dataset compare.
+///
+/// The standard one: an overview from outside with all of the ground across a 16:9 picture, a descent, a low pass over
+/// rough ground looking ahead, a turn, a climb, a look straight down, the dataset's edge from low height, a sweep of
+/// the horizon. Ground without large holes and at most twice as long as wide fills at least 15 % of such a picture at
+/// any time. The camera of every kind stays above the ground it flies over by a clearance taken from the data: at least
+/// 0.6 % of the extent (checked 30 times a second of the flight). `dataset` is left empty for the caller to name it.
+/// Reads up to five coarse tiles; throws Error(dataset) when one is damaged. @param seconds  > 0
+[[nodiscard]] Flight standardTour(const TileSource& source, double seconds, TourKind kind = TourKind::standard);
 
 }  // namespace terray

@@ -2,11 +2,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "client/stream/flight.h"
+#include "client/stream/ground_clearance.h"
 #include "client/stream/ground_map.h"
 #include "common/check.h"
 
@@ -14,8 +17,6 @@ namespace terray {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// How often the finished flight is checked against the ground.
-constexpr double kChecksPerSecond = 30;
 
 Radians headingAlong(glm::dvec2 direction) {
     return Radians(std::atan2(direction.x, direction.y));
@@ -43,14 +44,19 @@ class Planner {
         along_ = roughestDirection();
     }
 
-    /// The tour's few waypoints, over `seconds`.
-    [[nodiscard]] std::vector<FlightKey> waypoints(double seconds) const;
+    /// The few waypoints of a flight, over `seconds`.
+    [[nodiscard]] std::vector<FlightKey> waypoints(TourKind kind, double seconds) const;
     /// Least height of the camera over a place.
     [[nodiscard]] double leastHeight(glm::dvec2 place) const {
         return map_.highestNear(place, clearance_ + map_.cellSide()) + clearance_;
     }
 
   private:
+    /// Waypoints by when they are reached, in shares of the flight.
+    using Plan = std::vector<std::pair<double, Camera>>;
+    [[nodiscard]] Plan planOf(TourKind kind) const;
+    [[nodiscard]] Plan standard() const;
+    [[nodiscard]] Plan lowAlong(glm::dvec2 from, glm::dvec2 to, double pitchDegrees) const;
     [[nodiscard]] double passLength() const { return 0.3 * extent_; }
     [[nodiscard]] glm::dvec2 roughestDirection() const;
     [[nodiscard]] Camera low(glm::dvec2 place, Radians heading, double pitchDegrees) const;
@@ -122,7 +128,7 @@ Camera Planner::overview(double turnDegrees, double share) const {
                    share);
 }
 
-std::vector<FlightKey> Planner::waypoints(double seconds) const {
+Planner::Plan Planner::standard() const {
     const glm::dvec2 side(along_.y, -along_.x);  // to the right of the pass
     const glm::dvec2 entry = wellInside(summit_ - 0.5 * passLength() * along_);
     const glm::dvec2 exit = wellInside(summit_ + 0.5 * passLength() * along_);
@@ -136,7 +142,7 @@ std::vector<FlightKey> Planner::waypoints(double seconds) const {
     Camera back = low(edge.place, outward + Radians(kPi), -12);  // at the edge's height, but outside
     back.position += glm::dvec3(0.04 * extent_ * edge.outward, 0);
 
-    std::vector<std::pair<double, Camera>> plan{
+    Plan plan{
         {0.00, overview(0, 0.95)},  // from outside
         {0.12, overview(12, 1.15)},
         {0.19, lookingAt(over(entry - 0.3 * extent_ * along_, 0.12), peak)},  // descent
@@ -155,85 +161,84 @@ std::vector<FlightKey> Planner::waypoints(double seconds) const {
     };
     for (int quarter = 1; quarter <= 4; ++quarter)
         plan.emplace_back(0.84 + 0.04 * quarter, low(inside, outward + Radians(kPi + quarter * kPi / 2), -5));
-
-    std::vector<FlightKey> keys;
-    for (const auto& [share, camera] : plan) keys.push_back({share * seconds, camera});
-    return keys;
+    return plan;
 }
 
-/// The greatest of the values at most `reach` places away, averaged over as many: smooth, and nowhere below the values.
-std::vector<double> smoothEnvelope(const std::vector<double>& values, size_t reach) {
-    const auto window = [&](const std::vector<double>& from, size_t i, auto&& combine) {
-        const size_t first = i < reach ? 0 : i - reach, last = std::min(i + reach + 1, from.size());
-        return combine(from.begin() + static_cast<ptrdiff_t>(first), from.begin() + static_cast<ptrdiff_t>(last));
-    };
-    std::vector<double> highest(values.size()), smooth(values.size());
-    for (size_t i = 0; i < values.size(); ++i)
-        highest[i] = window(values, i, [](auto begin, auto end) { return *std::max_element(begin, end); });
-    for (size_t i = 0; i < values.size(); ++i)
-        smooth[i] = window(highest, i, [](auto begin, auto end) {
-            double sum = 0;
-            for (auto it = begin; it != end; ++it) sum += *it;
-            return sum / static_cast<double>(end - begin);
-        });
-    return smooth;
-}
-
-/// Many keys along the waypoints' spline, each at least as high as the ground around asks for.
-std::vector<FlightKey> denseKeys(const Flight& route, const Planner& planner) {
-    constexpr double kKeysPerSecond = 5, kSmoothSeconds = 1;
-    const double seconds = route.seconds();
-    const auto count = static_cast<size_t>(std::clamp(seconds * kKeysPerSecond, 64.0, 5000.0));
-    std::vector<FlightKey> keys;
-    std::vector<double> least;
-    for (size_t i = 0; i <= count; ++i) {
-        const double time = seconds * static_cast<double>(i) / static_cast<double>(count);
-        keys.push_back({time, route.at(time)});
-        least.push_back(planner.leastHeight(glm::dvec2(keys.back().camera.position)));
+/// Straight on, near the ground all the way.
+Planner::Plan Planner::lowAlong(glm::dvec2 from, glm::dvec2 to, double pitchDegrees) const {
+    constexpr int kLegs = 8;
+    Plan plan;
+    for (int leg = 0; leg <= kLegs; ++leg) {
+        const double share = leg / static_cast<double>(kLegs);
+        plan.emplace_back(share, low(glm::mix(from, to, share), headingAlong(to - from), pitchDegrees));
     }
-    const double perSecond = static_cast<double>(count) / seconds;
-    const auto envelope = smoothEnvelope(least, static_cast<size_t>(std::clamp(kSmoothSeconds * perSecond, 1.0, 5.0)));
-    for (size_t i = 0; i < keys.size(); ++i)
-        keys[i].camera.position.z = std::max(keys[i].camera.position.z, envelope[i]);
-    return keys;
+    return plan;
 }
 
-/// Raises keys until the spline between them is high enough too. Raising all keys alike raises the spline by as much,
-/// so the last resort always succeeds.
-void raiseUntilClear(Flight& flight, const Planner& planner) {
-    constexpr int kLocalRounds = 20;
-    const auto checks = static_cast<size_t>(std::ceil(flight.seconds() * kChecksPerSecond));
-    for (int round = 0; round <= kLocalRounds; ++round) {
-        double worst = 0;
-        std::vector<double> raise(flight.keys.size(), 0);
-        for (size_t i = 0; i <= checks; ++i) {
-            const double time =
-                flight.seconds() * static_cast<double>(i) / static_cast<double>(std::max<size_t>(checks, 1));
-            const glm::dvec3 place = flight.at(time).position;
-            const double missing = planner.leastHeight(glm::dvec2(place)) - place.z;
-            if (missing <= 0) continue;
-            worst = std::max(worst, missing);
-            const auto next = std::upper_bound(flight.keys.begin(), flight.keys.end(), time,
-                                               [](double t, const FlightKey& key) { return t < key.seconds; });
-            const auto after = std::min(static_cast<size_t>(next - flight.keys.begin()), raise.size() - 1);
-            for (const size_t key : {after, after - std::min<size_t>(after, 1)})
-                raise[key] = std::max(raise[key], 1.1 * missing);
+Planner::Plan Planner::planOf(TourKind kind) const {
+    const glm::dvec2 entry = wellInside(summit_ - 0.5 * passLength() * along_);
+    const glm::dvec2 exit = wellInside(summit_ + 0.5 * passLength() * along_);
+    const glm::dvec3 peak(summit_, map_.highestNear(summit_, map_.cellSide()));
+    const Radians ahead = headingAlong(along_);
+    const auto turned = [](Radians heading, double degrees) { return heading + radiansFromDegrees(degrees); };
+    switch (kind) {
+        case TourKind::standard:
+            break;
+        case TourKind::takeOff: {
+            Camera away{.position = over(exit, 0.15), .heading = ahead, .pitch = radiansFromDegrees(-10)};
+            return {{0, low(entry, ahead, 0)},
+                    {0.15, low(glm::mix(entry, exit, 0.02), ahead, 0)},
+                    {0.4, low(glm::mix(entry, exit, 0.25), ahead, 4)},
+                    {1, away}};
         }
-        if (worst == 0) return;
-        for (size_t i = 0; i < raise.size(); ++i)
-            flight.keys[i].camera.position.z += round < kLocalRounds ? raise[i] : 1.001 * worst;
+        case TourKind::lowPass:
+            return lowAlong(entry, exit, -8);
+        case TourKind::climb: {
+            const glm::dvec2 back = entry - 0.3 * extent_ * along_;
+            return {{0, low(entry, ahead, -5)},
+                    {0.3, lookingAt(over(entry, 0.02), peak)},
+                    {1, lookingAt(over(back, 0.7), peak)}};
+        }
+        case TourKind::lookDown:
+            return {{0, straightDown(entry, ahead)},
+                    {0.6, straightDown(exit, ahead)},
+                    {0.8, straightDown(exit, turned(ahead, 90))},
+                    {1, straightDown(exit, turned(ahead, 180))}};
+        case TourKind::horizonSweep: {
+            Plan plan;
+            for (int quarter = 0; quarter <= 4; ++quarter)
+                plan.emplace_back(0.25 * quarter, low(summit_, turned(ahead, 90 * quarter), -5));
+            return plan;
+        }
+        case TourKind::fastDash: {
+            // The diagonal that goes nearer past the summit.
+            const glm::dvec2 half(0.45 * width_, 0.45 * height_), other(-half.x, half.y);
+            const glm::dvec2 fromMiddle = summit_ - middle_;
+            const glm::dvec2 way =
+                std::abs(glm::dot(fromMiddle, half)) >= std::abs(glm::dot(fromMiddle, other)) ? half : other;
+            return lowAlong(middle_ - way, middle_ + way, -8);
+        }
     }
+    return standard();
+}
+
+std::vector<FlightKey> Planner::waypoints(TourKind kind, double seconds) const {
+    std::vector<FlightKey> keys;
+    for (const auto& [share, camera] : planOf(kind)) keys.push_back({share * seconds, camera});
+    return keys;
 }
 
 }  // namespace
 
-Flight standardTour(const TileSource& source, double seconds) {
+Flight standardTour(const TileSource& source, double seconds, TourKind kind) {
     TERRAY_CHECK_OP(seconds, >, 0.0);
     const GroundMap map = GroundMap::read(source);
     const Planner planner(map);
-    const Flight route{.dataset = {}, .name = {}, .keys = planner.waypoints(seconds)};
-    Flight tour{.dataset = {}, .name = "standard tour", .keys = denseKeys(route, planner)};
-    raiseUntilClear(tour, planner);
+    const Flight route{.dataset = {}, .name = {}, .keys = planner.waypoints(kind, seconds)};
+    Flight tour = flownAbove(route, [&](glm::dvec2 place) { return planner.leastHeight(place); });
+    const auto* named = std::find_if(std::begin(kTourKinds), std::end(kTourKinds),
+                                     [kind](const TourKindName& other) { return other.kind == kind; });
+    tour.name = std::string(named->name) + (kind == TourKind::standard ? " tour" : " flight");
     return tour;
 }
 

@@ -66,9 +66,12 @@ TEST(Tour, StaysClearOfTheGroundEverywhere) {
     for (const Case& item : cases()) {
         SCOPED_TRACE(item.name);
         const FakeDataset dataset = buildDataset(item.height, {.samples = item.samples, .spacing = item.spacing});
-        const Flight tour = standardTour(FakeSource(dataset), 30);
-        EXPECT_DOUBLE_EQ(tour.seconds(), 30);
-        expectClear(dataset, tour);
+        for (const TourKindName& kind : kTourKinds) {
+            SCOPED_TRACE(kind.name);
+            const Flight tour = standardTour(FakeSource(dataset), 30, kind.kind);
+            EXPECT_DOUBLE_EQ(tour.seconds(), 30);
+            expectClear(dataset, tour);
+        }
     }
 }
 
@@ -111,6 +114,77 @@ TEST(Tour, HasAllItsPhases) {
     EXPECT_TRUE(low);
     EXPECT_TRUE(edge);
     EXPECT_TRUE(std::all_of(std::begin(headings), std::end(headings), [](bool seen) { return seen; }));
+}
+
+/// What a flight over 10 km of hills does, at 30 looks a second.
+struct Course {
+    std::vector<Camera> cameras;
+    std::vector<double> above;  ///< the finest ground, metres
+    double extent = 0;
+};
+
+Course courseOf(TourKind kind) {
+    static const FakeDataset dataset = buildDataset(hills(300), {.samples = {1024, 1024}, .spacing = 10});
+    const GroundRect ground = dataset.metadata.groundBounds();
+    const Flight tour = standardTour(FakeSource(dataset), 20, kind);
+    Course course{.cameras = {}, .above = {}, .extent = ground.east - ground.west};
+    for (int n = 0; n <= 600; ++n) {
+        course.cameras.push_back(tour.at(n / 30.0));
+        const glm::dvec3 eye = course.cameras.back().position;
+        course.above.push_back(eye.z - finestHeight(dataset, glm::dvec2(eye)));
+    }
+    return course;
+}
+
+double highest(const Course& course) {
+    return *std::max_element(course.above.begin(), course.above.end()) / course.extent;
+}
+
+/// Along the ground, from its first place to its last, in extents.
+double way(const Course& course) {
+    return glm::distance(glm::dvec2(course.cameras.front().position), glm::dvec2(course.cameras.back().position)) /
+           course.extent;
+}
+
+TEST(Tour, TakesOffFromLowAndEndsHigh) {
+    const Course course = courseOf(TourKind::takeOff);
+    EXPECT_LT(course.above.front(), 0.08 * course.extent);
+    EXPECT_GT(course.above.back(), 0.12 * course.extent);
+    EXPECT_LT(glm::distance(course.cameras[0].position, course.cameras[60].position), 0.02 * course.extent) << "slow";
+}
+
+TEST(Tour, PassesAndDashesLow) {
+    const Course pass = courseOf(TourKind::lowPass), dash = courseOf(TourKind::fastDash);
+    EXPECT_LT(highest(pass), 0.1);
+    EXPECT_LT(highest(dash), 0.1);
+    EXPECT_GT(way(pass), 0.2);
+    EXPECT_NEAR(way(dash), 0.9 * std::sqrt(2), 0.01) << "along a diagonal, a twentieth from its corners";
+}
+
+TEST(Tour, ClimbsAndNeverSinks) {
+    const Course course = courseOf(TourKind::climb);
+    for (size_t n = 1; n < course.cameras.size(); ++n)
+        EXPECT_GE(course.cameras[n].position.z, course.cameras[n - 1].position.z - 1e-3 * course.extent) << n;
+    EXPECT_LT(course.above.front(), 0.08 * course.extent);
+    EXPECT_GT(course.cameras.back().position.z, 0.6 * course.extent);
+}
+
+TEST(Tour, LooksDownAllTheTimeAndTurns) {
+    const Course course = courseOf(TourKind::lookDown);
+    for (const Camera& camera : course.cameras) EXPECT_NEAR(camera.pitch.value(), -1.5707963, 1e-6);
+    const Radians turn = course.cameras.back().heading - course.cameras.front().heading;
+    EXPECT_NEAR(std::abs(std::remainder(turn.value(), 6.283185307)), 3.14159, 1e-3);
+}
+
+TEST(Tour, SweepsTheHorizonFromOnePlace) {
+    const Course course = courseOf(TourKind::horizonSweep);
+    std::vector<bool> seen(36, false);
+    for (const Camera& camera : course.cameras) {
+        EXPECT_LT(glm::distance(camera.position, course.cameras[0].position), 1e-3 * course.extent);
+        seen[static_cast<size_t>(std::remainder(camera.heading.value(), 6.283185307) / 6.283185307 * 36 + 36) % 36] =
+            true;
+    }
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](bool one) { return one; }));
 }
 
 TEST(Tour, BeginsWithAllOfTheGroundAcrossThePicture) {
