@@ -12,6 +12,8 @@ constexpr const char* kUsage =
     "                                      flights and tracks from and to JSON, KML, GPX, IGC\n"
     "  replay DATASET --flight FLIGHT.json --out DIR\n"
     "                                      flies it at a fixed rate and writes what each frame cost\n"
+    "  video DATASET --flight FLIGHT.json --out VIDEO.mp4\n"
+    "                                      draws it at fixed time steps and has ffmpeg make a video\n"
     "  error DATASET --flight FLIGHT.json --out DIR\n"
     "                                      measures its pictures against the truth, and their time\n"
     "  compare RUN_A RUN_B                 holds the figures of one run against another's, and fails if told when\n"
@@ -30,11 +32,12 @@ ExitCode runBench(const std::vector<std::string>& arguments) {
     if (command == "tour") return runTour(rest);
     if (command == "convert") return runConvert(rest);
     if (command == "replay") return runReplay(rest);
+    if (command == "video") return runVideo(rest);
     if (command == "error") return runError(rest);
     if (command == "compare") return runCompare(rest);
     if (command == "image-error") return runImageError(rest);
     const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
-    throw Error(ExitCode::usage, found + ", expected tour, convert, replay, error, compare or image-error (--help tells more)");
+    throw Error(ExitCode::usage, found + ", expected tour, convert, replay, video, error, compare or image-error (--help tells more)");
 }
 
 }  // namespace terray

@@ -21,6 +21,9 @@ ExitCode runConvert(const std::vector<std::string>& arguments);
 /// documented in client/README.md, "Replay output".
 ExitCode runReplay(const std::vector<std::string>& arguments);
 
+/// `terray-bench video`: a flight as an H.264 video, by ffmpeg; client/README.md, "Videos".
+ExitCode runVideo(const std::vector<std::string>& arguments);
+
 /// `terray-bench error`: measures how far pictures of a flight are from the truth, and how long they take, for one or
 /// several settings. The files are documented in client/README.md, "Error against run time".
 ExitCode runError(const std::vector<std::string>& arguments);

@@ -9,17 +9,19 @@ namespace terray {
 /// line is erased when the bar goes out of scope.
 class ProgressBar {
   public:
-    explicit ProgressBar(size_t frames);
+    /// @param before  of the frames, those that an earlier run has done
+    explicit ProgressBar(size_t frames, size_t before = 0);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// So many frames are done. Draws at most ten times a second.
+    /// So many frames are done, those before counted in. Draws at most ten times a second.
     void show(size_t done);
 
   private:
     using Clock = std::chrono::steady_clock;
     size_t frames_;
+    size_t before_;
     bool onTerminal_;
     Clock::time_point start_;
     Clock::time_point lastShown_;
