@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))  # for what the plots share
 SCRIPT = pathlib.Path(__file__).parents[2] / "scripts" / "plot_errors"
 HEADER = "curve,setting,frame_ms_median,frame_ms_min,frame_ms_max,error_px_p99,flip_mean\n"
 
