@@ -1,5 +1,6 @@
 #include "common/reference/ground_caster.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -55,18 +56,48 @@ struct GroundCaster::Ray {
     Quadratic height;
 };
 
-/// 512 x 512 patches with the samples around them. Patch (i, j) lies between samples i, i + 1 and j, j + 1.
+/// An extreme of what a slack allows: which one, by how much.
+struct GroundCaster::Offset {
+    Slack slack;
+    double sign = 1;  ///< of what is added to heights
+};
+
+/// Bounds of how a ground's height changes.
+struct GroundCaster::Relief {
+    double steepest = 0;  ///< over a sample to the east plus over one to the south
+    double step = 0;      ///< from a patch to the next: those beside a hole take other means for the missing sample
+};
+
+/// 512 x 512 patches with the samples around them and a ring of further ones. Patch (i, j) lies between samples i, i +
+/// 1 and j, j + 1.
 struct GroundCaster::Square {
     int64_t column = 0;  ///< of its first patch
     int64_t row = 0;
-    Grid<double> heights;  ///< 513 x 513; NaN: no surface
-    Grid<double> tops;     ///< of each block, its highest sample; -infinity: no surface
+    Grid<double> heights;  ///< 515 x 515, the first one before (column, row); NaN: no surface
+    Grid<double> tops;     ///< of each block, its highest sample and that of the ring; -infinity: no surface
 
     /// Samples 0, 0; 1, 0; 0, 1; 1, 1 of a patch.
     [[nodiscard]] std::array<double, 4> corners(int64_t i, int64_t j) const {
-        const int64_t x = i - column;
-        const int64_t y = j - row;
+        const int64_t x = i - column + 1;
+        const int64_t y = j - row + 1;
         return {heights.at(x, y), heights.at(x + 1, y), heights.at(x, y + 1), heights.at(x + 1, y + 1)};
+    }
+    /// How heights change in a patch and those around it.
+    [[nodiscard]] Relief reliefAround(int64_t i, int64_t j) const {
+        double east = 0, south = 0, low = kInfinity, high = -kInfinity;
+        bool missing = false;
+        const auto at = [&](int64_t x, int64_t y) { return heights.at(i - column + x, j - row + y); };
+        for (int64_t y = 0; y < 4; ++y)
+            for (int64_t x = 0; x < 4; ++x) {
+                const double height = at(x, y);
+                missing |= std::isnan(height);
+                low = std::fmin(low, height);
+                high = std::fmax(high, height);
+                if (x > 0) east = std::fmax(east, std::abs(height - at(x - 1, y)));
+                if (y > 0) south = std::fmax(south, std::abs(height - at(x, y - 1)));
+            }
+        if (missing) return {.steepest = 2 * (high - low), .step = high - low};
+        return {.steepest = east + south};
     }
 };
 
@@ -110,21 +141,24 @@ Quadratic clearanceOf(const Patch& patch, const PlaneLine& line, const Quadratic
             height.at(from) - patch.heightAt(u, v)};
 }
 
+/// First contact with a patch as if it existed whole.
+std::optional<double> meetWhole(const Patch& patch, int64_t i, int64_t j, const PlaneLine& line,
+                                const Quadratic& height, const Stretch& stretch) {
+    const double u = std::clamp(line.x(stretch.from) - static_cast<double>(i), 0.0, 1.0);
+    const double v = std::clamp(line.y(stretch.from) - static_cast<double>(j), 0.0, 1.0);
+    const auto s = firstBelow(clearanceOf(patch, line, height, stretch.from, u, v), {0, stretch.to - stretch.from});
+    return s ? std::optional(stretch.from + *s) : std::nullopt;
+}
+
 /// First contact with a patch, or with those quarters of it that exist.
 std::optional<double> meetPatch(const Patch& patch, int64_t i, int64_t j, const PlaneLine& line,
                                 const Quadratic& height, const Stretch& stretch) {
-    const auto meetPart = [&](const Stretch& part) -> std::optional<double> {
-        const double u = std::clamp(line.x(part.from) - static_cast<double>(i), 0.0, 1.0);
-        const double v = std::clamp(line.y(part.from) - static_cast<double>(j), 0.0, 1.0);
-        const auto s = firstBelow(clearanceOf(patch, line, height, part.from, u, v), {0, part.to - part.from});
-        return s ? std::optional(part.from + *s) : std::nullopt;
-    };
     if (patch.count == 0) return std::nullopt;
-    if (patch.count == 4) return meetPart(stretch);
+    if (patch.count == 4) return meetWhole(patch, i, j, line, height, stretch);
     std::optional<double> contact;
     walkSquares(line, 0.5, {2 * i, 2 * j, 2, 2}, stretch, [&](int64_t x, int64_t y, const Stretch& part) {
         const auto owner = static_cast<size_t>((x - 2 * i) + 2 * (y - 2 * j));
-        if (patch.exists[owner]) contact = meetPart(part);
+        if (patch.exists[owner]) contact = meetWhole(patch, i, j, line, height, part);
         return contact.has_value();
     });
     return contact;
@@ -136,33 +170,97 @@ GroundCaster::GroundCaster(const ReferenceHeights& heights, const Tiling& tiling
     : heights_(heights),
       tiling_(tiling),
       floor_(floor),
-      mostSquares_(std::max<uint64_t>(budgetBytes / (sizeof(double) * (kSquare + 1) * (kSquare + 1)), 1)) {}
+      mostSquares_(std::max<uint64_t>(budgetBytes / (sizeof(double) * (kSquare + 3) * (kSquare + 3)), 1)) {}
 
 GroundCaster::~GroundCaster() = default;
 
-std::optional<double> GroundCaster::meet(const View& view, const glm::dvec3& direction) const {
+GroundCaster::Ray GroundCaster::rayOf(const View& view, const glm::dvec3& direction) const {
     const double spacing = tiling_.finestSpacing;
     const double bend = view.earth ? view.earth->drop(direction.x, direction.y) : 0;
-    const Ray ray{
-        .line = {(view.eye.x - tiling_.west) / spacing - 0.5, (tiling_.north - view.eye.y) / spacing - 0.5,
-                 direction.x / spacing, -direction.y / spacing},
-        .height = {bend / view.exaggeration, direction.z / view.exaggeration, view.eye.z / view.exaggeration}};
-    const std::optional<Stretch> whole = overGround(ray);
+    return {.line = {(view.eye.x - tiling_.west) / spacing - 0.5, (tiling_.north - view.eye.y) / spacing - 0.5,
+                     direction.x / spacing, -direction.y / spacing},
+            .height = {bend / view.exaggeration, direction.z / view.exaggeration, view.eye.z / view.exaggeration}};
+}
+
+std::optional<double> GroundCaster::meet(const View& view, const glm::dvec3& direction) const {
+    return meetGround(rayOf(view, direction), floor_, nullptr);
+}
+
+std::optional<double> GroundCaster::meetExtreme(const View& view, const glm::dvec3& direction, const Slack& slack,
+                                                Extreme extreme, double floor) const {
+    const Offset offset{.slack = slack, .sign = static_cast<double>(extreme)};
+    Ray ray = rayOf(view, direction);
+    // A ground that is higher is one above which the ray is lower.
+    ray.height.a -= offset.sign * slack.heightBend;
+    ray.height.b -= offset.sign * slack.height.b;
+    ray.height.c -= offset.sign * slack.height.a;
+    return meetGround(ray, floor, &offset);
+}
+
+std::optional<double> GroundCaster::meetExtremeOfPatch(const Square& loaded, int64_t i, int64_t j, const Ray& ray,
+                                                       const Stretch& stretch, const Offset& offset) {
+    const Patch patch(loaded.corners(i, j));
+    if (patch.count == 0) return std::nullopt;
+    const Slack& slack = offset.slack;
+    const Relief relief = loaded.reliefAround(i, j);
+    const double edge = std::min(slack.edge.at(stretch.to), 0.5);
+    const double reach = slack.reach.at(stretch.to);
+    const auto x = static_cast<double>(i), y = static_cast<double>(j);
+    // Cut where the ray crosses a place at which sides may lie, or from which the next patch is within reach.
+    const std::array<double, 4> places{0.5 - edge, 0.5 + edge, reach, 1 - reach};
+    std::array<double, 10> times{stretch.from, stretch.to};
+    for (size_t n = 0; n < places.size(); ++n) {
+        const auto crossing = [&](double start, double change) {
+            return change == 0 ? stretch.to : std::clamp((places[n] - start) / change, stretch.from, stretch.to);
+        };
+        times[2 + 2 * n] = crossing(ray.line.startX - x, ray.line.changeX);
+        times[3 + 2 * n] = crossing(ray.line.startY - y, ray.line.changeY);
+    }
+    std::sort(times.begin(), times.end());
+    for (size_t n = 0; n + 1 < times.size(); ++n) {
+        if (n > 0 && times[n] == times[n + 1]) continue;
+        const Stretch part{times[n], times[n + 1]};
+        const double middle = part.from + (part.to - part.from) / 2;
+        const double u = ray.line.x(middle) - x, v = ray.line.y(middle) - y;
+        bool any = false, all = true;
+        for (size_t owner = 0; owner < 4; ++owner) {
+            const bool nearU = owner % 2 == 0 ? u <= 0.5 + edge : u >= 0.5 - edge;
+            const bool nearV = owner / 2 == 0 ? v <= 0.5 + edge : v >= 0.5 - edge;
+            any |= nearU && nearV && patch.exists[owner];
+            all &= !nearU || !nearV || patch.exists[owner];
+        }
+        if (!(offset.sign > 0 ? any : all)) continue;
+        const bool nextInReach = std::min({u, v, 1 - u, 1 - v}) <= reach;
+        const double steep = offset.sign * relief.steepest;
+        const double step = nextInReach ? offset.sign * relief.step : 0;
+        const Quadratic height{ray.height.a, ray.height.b - slack.reach.b * steep,
+                               ray.height.c - slack.reach.a * steep - step};
+        if (const auto contact = meetWhole(patch, i, j, ray.line, height, part)) return contact;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> GroundCaster::meetGround(const Ray& ray, double floor, const Offset* offset) const {
+    const bool grown = offset != nullptr && offset->sign > 0;
+    const std::optional<Stretch> whole = overGround(ray, floor, grown ? 0.5 : 0);
     if (!whole) return std::nullopt;
 
     const auto clears = [&](double top, const Stretch& part) { return ray.height.at(ray.height.leastAt(part)) > top; };
     const GridSize size = heights_.size();
     const GridRect squares{-1, -1, (size.width - 1) / kSquare + 2, (size.height - 1) / kSquare + 2};
+    const auto meetOne = [&](const Square& loaded, int64_t i, int64_t j, const Stretch& inPatch) {
+        if (offset != nullptr) return meetExtremeOfPatch(loaded, i, j, ray, inPatch, *offset);
+        return meetPatch(Patch(loaded.corners(i, j)), i, j, ray.line, ray.height, inPatch);
+    };
     std::optional<double> contact;
     const auto meetSquare = [&](int64_t column, int64_t row, const Stretch& inSquare) {
-        if (clears(topOf({column * kSquare, row * kSquare, kSquare + 1, kSquare + 1}), inSquare)) return false;
+        if (clears(topOf({column * kSquare - 1, row * kSquare - 1, kSquare + 3, kSquare + 3}), inSquare)) return false;
         const SquarePointer loaded = square({row, column});
         const auto meetBlock = [&](int64_t blockX, int64_t blockY, const Stretch& inBlock) {
             if (clears(loaded->tops.at(blockX - column * kBlocks, blockY - row * kBlocks), inBlock)) return false;
             return walkSquares(ray.line, 1, {blockX * kBlock, blockY * kBlock, kBlock, kBlock}, inBlock,
                                [&](int64_t i, int64_t j, const Stretch& inPatch) {
-                                   contact =
-                                       meetPatch(Patch(loaded->corners(i, j)), i, j, ray.line, ray.height, inPatch);
+                                   contact = meetOne(*loaded, i, j, inPatch);
                                    return contact.has_value();
                                });
         };
@@ -172,8 +270,8 @@ std::optional<double> GroundCaster::meet(const View& view, const glm::dvec3& dir
     return contact;
 }
 
-/// The part of a ray over samples and not below the floor. A ray that sinks below it has passed the ground.
-std::optional<Stretch> GroundCaster::overGround(const Ray& ray) const {
+/// A ray that sinks below the floor has passed the ground.
+std::optional<Stretch> GroundCaster::overGround(const Ray& ray, double floor, double margin) const {
     Stretch part{0, kInfinity};
     const auto clip = [&](double start, double change, double low, double high) {
         if (change == 0) {
@@ -185,17 +283,17 @@ std::optional<Stretch> GroundCaster::overGround(const Ray& ray) const {
         part = {std::max(part.from, std::min(a, b)), std::min(part.to, std::max(a, b))};
     };
     const GridSize size = heights_.size();
-    clip(ray.line.startX, ray.line.changeX, -0.5, static_cast<double>(size.width) - 0.5);
-    clip(ray.line.startY, ray.line.changeY, -0.5, static_cast<double>(size.height) - 0.5);
+    clip(ray.line.startX, ray.line.changeX, -0.5 - margin, static_cast<double>(size.width) - 0.5 + margin);
+    clip(ray.line.startY, ray.line.changeY, -0.5 - margin, static_cast<double>(size.height) - 0.5 + margin);
     if (!(part.from <= part.to) || std::isinf(part.from)) return std::nullopt;
     if (std::isinf(part.to)) {  // straight up or down: t is bounded by its height alone
         if (ray.height.b == 0) return Stretch{0, 0};
-        part.to = std::max((floor_ - ray.height.c) / ray.height.b, 0.0);
+        part.to = std::max((floor - ray.height.c) / ray.height.b, 0.0);
         if (ray.height.b > 0) return Stretch{part.to, part.to};  // it meets where it starts, or never
-        if (ray.height.c < floor_) return std::nullopt;
+        if (ray.height.c < floor) return std::nullopt;
         return part;
     }
-    const Quadratic aboveFloor{ray.height.a, ray.height.b, ray.height.c - floor_};
+    const Quadratic aboveFloor{ray.height.a, ray.height.b, ray.height.c - floor};
     if (aboveFloor.at(part.from) < 0) {
         if (!(aboveFloor.at(part.to) > 0)) return std::nullopt;
         part.from = signChange(aboveFloor, part);
@@ -284,10 +382,11 @@ GroundCaster::SquarePointer GroundCaster::square(const SquareId& id) const {
 }
 
 GroundCaster::SquarePointer GroundCaster::load(const SquareId& id) const {
+    constexpr int64_t kSide = kSquare + 3;  // samples: around the patches, and a ring
     auto made = std::make_shared<Square>();
     made->row = id.first * kSquare;
     made->column = id.second * kSquare;
-    const GridRect samples{made->column, made->row, kSquare + 1, kSquare + 1};
+    const GridRect samples{made->column - 1, made->row - 1, kSide, kSide};
     const GridSize size = heights_.size();
     const GridRect shared = intersection(samples, {0, 0, size.width, size.height});
     made->heights = Grid<double>({samples.width, samples.height}, std::numeric_limits<double>::quiet_NaN());
@@ -298,15 +397,15 @@ GroundCaster::SquarePointer GroundCaster::load(const SquareId& id) const {
                 made->heights.at(x + shared.x - samples.x, y + shared.y - samples.y) = read.at(x, y);
     }
     made->tops = Grid<double>({kBlocks, kBlocks}, -kInfinity);
-    for (int64_t y = 0; y <= kSquare; ++y)
-        for (int64_t x = 0; x <= kSquare; ++x) {
+    for (int64_t y = 0; y < kSide; ++y)
+        for (int64_t x = 0; x < kSide; ++x) {
             const double height = made->heights.at(x, y);
             if (std::isnan(height)) continue;
-            // A sample on the line between two blocks belongs to both.
-            for (int64_t blockY = std::max<int64_t>(y - 1, 0) / kBlock; blockY <= std::min(y / kBlock, kBlocks - 1);
-                 ++blockY)
-                for (int64_t blockX = std::max<int64_t>(x - 1, 0) / kBlock; blockX <= std::min(x / kBlock, kBlocks - 1);
-                     ++blockX) {
+            // A sample belongs to each block whose patches it, or one beside it, is a corner of.
+            const auto first = [](int64_t at) { return std::max<int64_t>(at - 3, 0) / kBlock; };
+            const auto last = [](int64_t at) { return std::min(at / kBlock, kBlocks - 1); };
+            for (int64_t blockY = first(y); blockY <= last(y); ++blockY)
+                for (int64_t blockX = first(x); blockX <= last(x); ++blockX) {
                     double& top = made->tops.at(blockX, blockY);
                     top = std::max(top, height);
                 }
