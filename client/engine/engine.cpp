@@ -351,13 +351,20 @@ Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const Eng
 Engine::~Engine() = default;
 
 FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
+    State& state = *state_;
+    if (state.sunClock) state.options.render.sunDirection = state.sunClock->direction(camera.position);
+    if (state.options.prefetch && !waitForTiles)
+        state.motion.observe(camera, std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
+    return drawView(state.viewFrom(camera), waitForTiles);
+}
+
+FrameReport Engine::drawView(const View& view, bool waitForTiles) {
     const Clock::time_point start = Clock::now();
     State& state = *state_;
+    TERRAY_CHECK_OP(view.width, ==, state.targets.width());
+    TERRAY_CHECK_OP(view.height, ==, state.targets.height());
     state.report = {};
-    if (state.sunClock) state.options.render.sunDirection = state.sunClock->direction(camera.position);
-    state.view = state.viewFrom(camera);
-    if (state.options.prefetch && !waitForTiles)
-        state.motion.observe(camera, std::chrono::duration<double>(start.time_since_epoch()).count());
+    state.view = view;
     state.timer.enter(GpuPass::upload);
     state.resident.forgetBeyond(kMaxKnownTiles);
     const bool edited = state.takeEdits();

@@ -100,6 +100,9 @@ class Engine {
     /// one wait no tile is uploaded more than three times, a tile that failed is not asked for again, and where a
     /// server fails the wait ends with what there is (FrameReport::unreachable).
     FrameReport drawFrame(const Camera& camera, bool waitForTiles);
+    /// The same for a view as it is, its earth and exaggeration included: also one that no camera has, with rays that
+    /// are exactly vertical, say. The sun stays where it is.
+    FrameReport drawView(const View& view, bool waitForTiles);
 
     /// From the next frame on heights, the camera's among them, are drawn multiplied by this. No tile is loaded anew;
     /// selection refines for the larger errors.
