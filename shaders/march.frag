@@ -27,5 +27,5 @@ void main() {
     if (!march.hit) discard;
     outHit = vec4(rayPoint(node, direction, march.t), march.t);
     outNode = nodeIndex + 1u;
-    gl_FragDepth = min(frame.forward.w / march.t, 1.0);
+    gl_FragDepth = frame.forward.w / max(march.t, frame.forward.w);  // t may be 0, of either sign
 }

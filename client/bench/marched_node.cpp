@@ -45,27 +45,26 @@ MarchedNode::MarchedNode(const DrawNode& node, const MarchedTile& of, const Tili
       curved(view.earth.has_value()),
       bilinear(surface == Surface::bilinear || (surface == Surface::automatic && magnified(node, tiling, view))) {
     const HeightEncoding& encoding = of.stored.encoding;
-    const GroundRect ground = tiling.bounds(node.heightTile);
     const auto code = [&](double height) {
         return height / encoding.metresPerCode() - static_cast<double>(encoding.offset);
     };
     const auto direction = [&](const glm::dvec3& world) {
         return glm::dvec3(world.x / spacing, -world.y / spacing, world.z / step);
     };
-    eye = {(view.eye.x - ground.west) / spacing, (ground.north - view.eye.y) / spacing,
-           code(view.eye.z / view.exaggeration)};
+    eye = glm::dvec3(eyeInTile(node.heightTile, tiling, view.eye), code(view.eye.z / view.exaggeration));
     right = direction(view.right * view.tanHalfWidth());
     up = direction(view.up * view.tanHalfHeight);
     forward = direction(view.forward);
-    // The cell within its height tile, and half a code of room above and below, as in nodeParameters(). For patches the
+    // The cell within its height tile, with room above and below, as in nodeParameters(). For patches the
     // tile's greatest code in place of the greatest of this part: rays enter a little higher, and hit the same.
     const auto below = static_cast<int>(node.cell.level - node.heightTile.level);
     const double west = std::ldexp(static_cast<double>(node.cell.x), -below) - node.heightTile.x;
     const double north = std::ldexp(static_cast<double>(node.cell.y), -below) - node.heightTile.y;
     const double side = std::ldexp(kTileCore, -below);
+    const double margin = boxMargin(node, tiling, view, eye.z, step);
     const double top = bilinear ? of.maxima[9].at(0, 0) : code(node.maxHeight);
-    boxMin = {kTileCore * west, kTileCore * north, code(node.minHeight) - 0.5};
-    boxMax = {kTileCore * west + side, kTileCore * north + side, top + 0.5};
+    boxMin = {kTileCore * west, kTileCore * north, code(node.minHeight) - margin};
+    boxMax = {kTileCore * west + side, kTileCore * north + side, top + margin};
     if (view.earth) bend = {view.earth->xx, view.earth->xy, view.earth->yy};
     startLevel = std::max(8 - below, bilinear ? 1 : 0);
 }

@@ -5,7 +5,9 @@
 #include <atomic>
 #include <optional>
 #include <thread>
+#include <type_traits>
 
+#include "client/render/frame_targets.h"
 #include "client/render/node_parameters.h"
 #include "common/error.h"
 #include "common/parallel.h"
@@ -26,7 +28,8 @@ class MarchedRay {
     using Contact = std::optional<real>;
 
     MarchedRay(const MarchedNode& node, const vec3& direction) : node_(node) {
-        const vec3 eye(node.eye);
+        vec3 eye(node.eye);
+        if (std::is_same_v<real, float>) eye = vec3(onFloatGrid(glm::dvec2(node.eye)), node.eye.z);
         mirrored_ = {direction.x < 0, direction.y < 0};
         direction_ = {std::abs(direction.x), std::abs(direction.y), direction.z};
         eye_ = {mirrored_[0] ? kCore - eye.x : eye.x, mirrored_[1] ? kCore - eye.y : eye.y, eye.z};
@@ -38,8 +41,8 @@ class MarchedRay {
         lowest_ = Math::lowestTime(direction_.z, bend_);
     }
 
-    /// View depth of the first hit: marchNode() of shaders/march.glsl.
-    [[nodiscard]] Contact march() const {
+    /// View depth of the first hit: marchNode() of shaders/march.glsl. @param steps  raised as there
+    [[nodiscard]] Contact march(uint32_t& steps) const {
         const auto [boxMin, boxMax] = mirroredBox();
         const auto box = clipped(boxMin, boxMax);
         if (!(box.enter <= box.exit)) return {};
@@ -49,7 +52,16 @@ class MarchedRay {
                    std::clamp(static_cast<int>(std::floor(eye_.y + box.enter * direction_.y)), first.y, last.y));
         const int leaf = node_.bilinear ? 1 : 0;
         int level = node_.startLevel;
-        for (real t = box.enter;;) {
+        uint32_t count = 0;
+        const auto finished = [&](Contact contact) {
+            steps += count;
+            return contact;
+        };
+        for (real t = box.enter;; ++count) {
+            if (count >= (node_.bilinear ? kMaxPatchSteps : kMaxColumnSteps)) {
+                steps |= kOutOfStepsBit;
+                return finished({});
+            }
             const ivec2 edge = Math::blockEdge(cell, level);
             const vec2 times = Math::edgeTimes(edge, vec2(eye_.x, eye_.y), vec2(inverse_.x, inverse_.y));
             const real leave = std::max(t, std::min({times.x, times.y, box.exit}));
@@ -60,11 +72,11 @@ class MarchedRay {
                 --level;
                 continue;
             }
-            if (contact && node_.bilinear) contact = overPatches(edge, t, leave);
-            if (contact) return contact;
-            if (leave >= box.exit) return {};
+            if (contact && node_.bilinear) contact = overPatches(edge, t, leave, count);
+            if (contact) return finished(contact);
+            if (leave >= box.exit) return finished({});
             cell = Math::cellAfter(cell, edge, times, vec2(eye_.x, eye_.y), vec2(direction_.x, direction_.y));
-            if (cell.x > last.x || cell.y > last.y) return {};
+            if (cell.x > last.x || cell.y > last.y) return finished({});
             level = std::max(Math::levelAfter(level, node_.startLevel, edge, times), leaf);
             t = leave;
         }
@@ -79,6 +91,9 @@ class MarchedRay {
 
   private:
     static constexpr real kCore = kTileCore;
+    // kMaxSteps of shaders/march.glsl.
+    static constexpr uint32_t kMaxColumnSteps = 1024 + 1032 + 1;
+    static constexpr uint32_t kMaxPatchSteps = 1024 + 1032 + 512 * 6 + 1;
 
     [[nodiscard]] std::pair<vec3, vec3> mirroredBox() const {
         vec3 low(node_.boxMin), high(node_.boxMax);
@@ -127,13 +142,13 @@ class MarchedRay {
     }
 
     /// patchContact() of shaders/patches.glsl.
-    [[nodiscard]] Contact overPatches(const ivec2& edge, real enter, real leave) const {
+    [[nodiscard]] Contact overPatches(const ivec2& edge, real enter, real leave, uint32_t& steps) const {
         constexpr int kPatchesOfBlock = 5;
         const auto start = [&](real eye, real direction, int end) {
             return std::clamp(static_cast<int>(std::floor(eye + enter * direction - real{0.5F})), end - 3, end - 1);
         };
         ivec2 corner(start(eye_.x, direction_.x, edge.x), start(eye_.y, direction_.y, edge.y));
-        for (int i = 0; i < kPatchesOfBlock; ++i) {
+        for (int i = 0; i < kPatchesOfBlock; ++i, ++steps) {
             const vec2 times((static_cast<real>(corner.x) + real{1.5F} - eye_.x) * inverse_.x,
                              (static_cast<real>(corner.y) + real{1.5F} - eye_.y) * inverse_.y);
             const real exit = std::clamp(std::min(times.x, times.y), enter, leave);
@@ -202,7 +217,7 @@ class MarchedRay {
 /// What a pixel shows: rayDirection() of shaders/nodes.glsl, then node after node until the first hit.
 template <class Math>
 DrawnPixel drawPixel(const std::vector<DrawNode>& drawn, const std::vector<MarchedNode>& nodes, const Tiling& tiling,
-                     const View& view, const glm::ivec2& pixel) {
+                     const View& view, const glm::ivec2& pixel, uint32_t& steps) {
     using real = typename Math::real;
     using vec3 = typename Math::vec3;
     // gl_FragCoord counts rows from the bottom.
@@ -212,7 +227,7 @@ DrawnPixel drawPixel(const std::vector<DrawNode>& drawn, const std::vector<March
         const MarchedNode& node = nodes[n];
         const vec3 direction = vec3(node.forward) + x * vec3(node.right) + y * vec3(node.up);
         const MarchedRay<Math> ray(node, direction);
-        const std::optional<real> t = ray.march();
+        const std::optional<real> t = ray.march(steps);
         if (!t) continue;
         return {.ground = true,
                 .depth = *t,
@@ -225,7 +240,9 @@ DrawnPixel drawPixel(const std::vector<DrawNode>& drawn, const std::vector<March
 }  // namespace
 
 std::vector<DrawnPixel> ShaderMarch::draw(const std::vector<DrawNode>& nodes, const View& view, Surface surface,
-                                          Precision precision, std::span<const glm::ivec2> pixels) {
+                                          Precision precision, std::span<const glm::ivec2> pixels,
+                                          std::span<uint32_t> steps) {
+    TERRAY_CHECK(steps.empty() || steps.size() == pixels.size());
     constexpr size_t kAtATime = 256;
     const Tiling& tiling = source_.metadata().tiling;
     std::vector<MarchedNode> marched;
@@ -237,7 +254,11 @@ std::vector<DrawnPixel> ShaderMarch::draw(const std::vector<DrawNode>& nodes, co
     const auto one = precision == Precision::single ? drawPixel<math::Single> : drawPixel<math::Double>;
     forEachParallel((pixels.size() + kAtATime - 1) / kAtATime, cores, never, [&](int, size_t part) {
         const size_t end = std::min((part + 1) * kAtATime, pixels.size());
-        for (size_t n = part * kAtATime; n < end; ++n) drawn[n] = one(nodes, marched, tiling, view, pixels[n]);
+        for (size_t n = part * kAtATime; n < end; ++n) {
+            uint32_t taken = 0;
+            drawn[n] = one(nodes, marched, tiling, view, pixels[n], taken);
+            if (!steps.empty()) steps[n] = taken;
+        }
     });
     return drawn;
 }

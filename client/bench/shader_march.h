@@ -29,8 +29,10 @@ class ShaderMarch {
     /// MB each. Throws Error(dataset) when one cannot be had.
     /// @param nodes   front to back, as selected
     /// @param pixels  column and row from the top
+    /// @param steps   if not empty, one for each pixel: what the shaders count, as FrameTargets::readSteps()
     [[nodiscard]] std::vector<DrawnPixel> draw(const std::vector<DrawNode>& nodes, const View& view, Surface surface,
-                                               Precision precision, std::span<const glm::ivec2> pixels);
+                                               Precision precision, std::span<const glm::ivec2> pixels,
+                                               std::span<uint32_t> steps = {});
 
   private:
     const MarchedTile& tile(const TileId& id);

@@ -40,8 +40,9 @@ SubSquare subSquare(const TileId& cell, const TileId& ancestor) {
 
 constexpr double kUnbounded = 1e30;
 constexpr float kManyPixels = 1e6F;
-/// View depth in metres at which boxes around the eye are cut off, so that they have a projection.
-constexpr double kNearest = 1e-3;
+/// View depth in metres at which boxes around the eye are cut off, so that they have a projection: less than any ground
+/// that is not at the eye, more than the roundings of corners.
+constexpr double kNearest = 1e-9;
 
 /// Distance from the eye to the farthest corner of a cell's box as it is seen, metres.
 double farthestCorner(const DrawNode& node, const Tiling& tiling, const View& view) {
@@ -140,6 +141,24 @@ std::vector<glm::dvec2> clipped(const std::vector<glm::dvec2>& polygon, const In
 
 }  // namespace
 
+glm::dvec2 eyeInTile(const TileId& heightTile, const Tiling& tiling, const glm::dvec3& eye) {
+    const double spacing = tiling.spacing(heightTile.level);
+    return {(eye.x - tiling.west) / spacing - double{kTileCore} * heightTile.x,
+            (tiling.north - eye.y) / spacing - double{kTileCore} * heightTile.y};
+}
+
+glm::dvec2 onFloatGrid(const glm::dvec2& eye) {
+    constexpr double kGrid = 0x1p-15;
+    return glm::round(eye / kGrid) * kGrid;
+}
+
+double boxMargin(const DrawNode& node, const Tiling& tiling, const View& view, double eyeCode, double step) {
+    constexpr double kRoundings = 0x1p-20;
+    const double drop =
+        view.earth ? dropOver(*view.earth, tiling.bounds(node.cell), glm::dvec2(view.eye)).greatest / step : 0;
+    return 0.5 + kRoundings * (std::abs(eyeCode) + drop);
+}
+
 bool magnified(const DrawNode& node, const Tiling& tiling, const View& view) {
     const GroundRect ground = tiling.bounds(node.cell);
     const double x = std::max({ground.west - view.eye.x, view.eye.x - ground.east, 0.0});
@@ -177,7 +196,6 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     const double spacing = tiling.spacing(node.heightTile.level);
     const double heightStep = heights.encoding.metresPerCode();
     const double step = view.exaggeration * heightStep;
-    const GroundRect ground = tiling.bounds(node.heightTile);
     const auto codeOf = [&](double height) {
         return height / heightStep - static_cast<double>(heights.encoding.offset);
     };
@@ -186,7 +204,7 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     };
 
     interop::NodeParameters out;
-    const glm::dvec3 eye((view.eye.x - ground.west) / spacing, (ground.north - view.eye.y) / spacing,
+    const glm::dvec3 eye(onFloatGrid(eyeInTile(node.heightTile, tiling, view.eye)),
                          codeOf(view.eye.z / view.exaggeration));
     const double marginMetres = farthestCorner(node, tiling, view) / view.focalPixels();
     out.eye = withW(eye, spacing);
@@ -194,14 +212,14 @@ interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& s
     out.up = withW(tileDirection(view.up * view.tanHalfHeight), marginMetres);
     out.forward = withW(tileDirection(view.forward), view.exaggeration * heights.record.error);
 
-    // Half a code above and below, so that rounding the bounds to float cuts off no surface.
+    const double margin = boxMargin(node, tiling, view, eye.z, step);
     const SubSquare cell = subSquare(node.cell, node.heightTile);
     const Bulge bulge = view.earth ? bulgeOver(*view.earth, tiling.tileSide(node.cell.level)) : Bulge();
-    out.boxMin = withW({cell.corner, codeOf(node.minHeight) - 0.5}, bulge.down);
+    out.boxMin = withW({cell.corner, codeOf(node.minHeight) - margin}, bulge.down);
     const double patchTop = heights.maxima.over(cell.corner.x, cell.corner.y, cell.side);
     double top = source.bilinear ? patchTop : codeOf(node.maxHeight);
     if (source.castsShadow) top = std::max(top, patchTop);
-    out.boxMax = withW({cell.corner + cell.side, top + 0.5}, bulge.up);
+    out.boxMax = withW({cell.corner + cell.side, top + margin}, bulge.up);
 
     if (node.imageryTile && source.photoSlot != TERRAY_NO_SLOT) {
         // Both tiles contain the cell, so one contains the other: photo texels = offset + scale * height texels.

@@ -25,6 +25,21 @@ struct NodeSource {
 [[nodiscard]] interop::NodeParameters nodeParameters(const DrawNode& node, const NodeSource& source,
                                                      const Tiling& tiling, const View& view);
 
+/// The eye in a height tile's frame, x and y in texels. Counted from the root square's corner, so that the frames of
+/// all tiles agree to the last place about a ray between two of them.
+[[nodiscard]] glm::dvec2 eyeInTile(const TileId& heightTile, const Tiling& tiling, const glm::dvec3& eye);
+
+/// The same on a grid of 2^-15 texels, which floats hold at any place of a tile: to them, too, the frames of a level
+/// agree. (Else a ray along a border of two tiles may be rounded out of the one and not into the other.)
+[[nodiscard]] glm::dvec2 onFloatGrid(const glm::dvec2& eye);
+
+/// Codes by which a node's box is higher and lower than what it holds: half a one, so that rounding its bounds to float
+/// cuts off no surface, and 2^-20 of what a ray's height at the box is the sum of, some 16 roundings of it. Seen from
+/// 10^7 codes above, both ends of a box of flat ground would else be the same, and the ray through it empty.
+/// @param eyeCode  the eye's height above the tile's code 0  @param step  metres per code, exaggerated
+[[nodiscard]] double boxMargin(const DrawNode& node, const Tiling& tiling, const View& view, double eyeCode,
+                               double step);
+
 /// Whether a sample of the node's height tile may cover more than a pixel at the node's nearest point: there columns
 /// would show as steps, and the surface is drawn bilinear.
 [[nodiscard]] bool magnified(const DrawNode& node, const Tiling& tiling, const View& view);

@@ -55,6 +55,7 @@ void RasterLaunch::cast(const CastFrame& frame) {
     glBindVertexArray(vertexArray_.name());
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
+    glEnable(GL_DEPTH_CLAMP);  // a box that ends before the depth of value 1 is in the picture all the same
     glEnable(GL_CULL_FACE);
     glFrontFace(GL_CW);
     glDepthFunc(GL_GREATER);
@@ -70,6 +71,7 @@ void RasterLaunch::cast(const CastFrame& frame) {
         }
     }
     glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_CLAMP);
     glDisable(GL_DEPTH_TEST);
 }
 
