@@ -17,6 +17,7 @@ constexpr const char* kUsage =
     "  error DATASET --flight FLIGHT.json --out DIR\n"
     "                                      measures its pictures against the truth, and their time\n"
     "  compare RUN_A RUN_B                 holds the figures of one run against another's, and fails if told when\n"
+    "  stability                           casts rays that are hard on arithmetic, and fails if one ends wrongly\n"
     "  image-error REFERENCE TEST          compares two pictures, or the frames of two replays: FLIP and PSNR\n"
     "Each command tells its options with --help; terray-bench --version says what was built.\n";
 
@@ -35,9 +36,11 @@ ExitCode runBench(const std::vector<std::string>& arguments) {
     if (command == "video") return runVideo(rest);
     if (command == "error") return runError(rest);
     if (command == "compare") return runCompare(rest);
+    if (command == "stability") return runStability(rest);
     if (command == "image-error") return runImageError(rest);
     const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
-    throw Error(ExitCode::usage, found + ", expected tour, convert, replay, video, error, compare or image-error (--help tells more)");
+    throw Error(ExitCode::usage, found + ", expected tour, convert, replay, video, error, compare, stability or image-error "
+                                         "(--help tells more)");
 }
 
 }  // namespace terray

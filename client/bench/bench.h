@@ -32,6 +32,10 @@ ExitCode runError(const std::vector<std::string>& arguments);
 /// when they were not measured alike. Returns ExitCode::threshold when a limit of --fail-if is crossed.
 ExitCode runCompare(const std::vector<std::string>& arguments);
 
+/// `terray-bench stability`: casts rays at grounds and from places that are hard on arithmetic. Returns
+/// ExitCode::verification when one ends wrongly. Described in client/README.md, "Stability".
+ExitCode runStability(const std::vector<std::string>& arguments);
+
 /// `terray-bench image-error`: says how far pictures, or the frames of two replays, are from each other. Throws
 /// Error(unsupported) in a build without pictures.
 ExitCode runImageError(const std::vector<std::string>& arguments);

@@ -6,7 +6,8 @@
 namespace terray {
 
 /// The directory that a run writes into: summary.json and manifest.json, a replay's frames.csv, steps.csv and
-/// frames/frame_00000.png, ..., and of a measurement of errors errors.csv or split.csv, and maps/.
+/// frames/frame_00000.png, ..., and of a measurement of errors errors.csv or split.csv, and maps/;
+/// of the stability suite stability.csv.
 class RunDirectory {
   public:
     /// Creates the directory, unless it exists. Throws Error(output) when that fails, or when an earlier run lies in it
@@ -25,6 +26,7 @@ class RunDirectory {
     [[nodiscard]] std::filesystem::path errors() const;
     /// Of errors by their causes.
     [[nodiscard]] std::filesystem::path split() const;
+    [[nodiscard]] std::filesystem::path stability() const;
     /// Made when it is first asked for; its files begin with map_.
     [[nodiscard]] std::filesystem::path maps() const;
     /// How many rays took how many steps.
