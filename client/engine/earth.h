@@ -21,6 +21,7 @@ enum class EarthShape : uint8_t {
 struct EarthOptions {
     EarthShape shape = EarthShape::automatic;
     double refraction = kStandardRefraction;  ///< k, -10 .. below 1
+    bool operator==(const EarthOptions&) const = default;
 };
 
 /// Decides whether a dataset is drawn over a curved earth, and knows how that curves at each eye.

@@ -48,6 +48,16 @@ void settleShading(ShadingOptions& shading, const DatasetMetadata& metadata, Pix
     shading.tolerance = tolerance;
 }
 
+EarthModel earthOf(const DatasetMetadata& metadata, const EngineOptions& options, int width, int height) {
+    return {metadata, options.earth, options.selection.tolerance.value(),
+            viewOf(Camera(), width, height).focalPixels()};
+}
+
+std::optional<SunClock> clockOf(const DatasetMetadata& metadata, const EngineOptions& options) {
+    if (!options.sunTime) return {};
+    return std::optional<SunClock>(std::in_place, *options.sunTime, metadata);
+}
+
 /// The options as this dataset and this shading let them be: imagery is on only when there is some, and what the
 /// picture does not show is off.
 EngineOptions settled(EngineOptions options, const TileSource& source) {
@@ -116,12 +126,11 @@ GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& optio
 }  // namespace
 
 struct Engine::State {
-    State(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& given, int width, int height)
-        : options(settled(given, source)),
-          earth(source.metadata(), options.earth, options.selection.tolerance.value(),
-                viewOf(Camera(), width, height).focalPixels()),
-          sunClock(options.sunTime ? std::optional<SunClock>(std::in_place, *options.sunTime, source.metadata())
-                                   : std::nullopt),
+    State(const TileSource& tiles, const ShaderLibrary& shaders, const EngineOptions& given, int width, int height)
+        : source(tiles),
+          options(settled(given, source)),
+          earth(earthOf(source.metadata(), options, width, height)),
+          sunClock(clockOf(source.metadata(), options)),
           resident(source, shaders, slotOptions(source, options, earth), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
           targets(width, height, options.features, options.colour),
@@ -157,6 +166,7 @@ struct Engine::State {
     void render();
     void fillReport();
 
+    const TileSource& source;
     EngineOptions options;
     EarthModel earth;
     std::optional<SunClock> sunClock;
@@ -172,7 +182,8 @@ struct Engine::State {
     std::optional<EditList> newEdits;
     UploadPace uploadPace;
     size_t mostPending;  ///< tiles that may wait for upload
-    Pager pager;         // last: its threads end first
+    bool frozen = false;  ///< the selection is that of an earlier frame
+    Pager pager;          // last: its threads end first
 };
 
 void Engine::State::selectAndPin() {
@@ -367,8 +378,10 @@ FrameReport Engine::drawView(const View& view, bool waitForTiles) {
     state.view = view;
     state.timer.enter(GpuPass::upload);
     state.resident.forgetBeyond(kMaxKnownTiles);
-    const bool edited = state.takeEdits();
-    if (waitForTiles) {
+    const bool edited = !state.frozen && state.takeEdits();
+    if (state.frozen) {
+        sortFrontToBack(state.selection.nodes, state.resident.tree().tiling(), state.view.eye);
+    } else if (waitForTiles) {
         state.waitForTiles();
     } else {
         state.stream();
@@ -383,10 +396,46 @@ FrameReport Engine::drawView(const View& view, bool waitForTiles) {
     return std::exchange(state.report, {});
 }
 
+void Engine::resize(int width, int height) {
+    const FrameTargets& old = state_->targets;
+    if (old.width() == width && old.height() == height) return;
+    state_->targets = FrameTargets(width, height, state_->options.features, state_->options.colour);
+    state_->earth = earthOf(state_->source.metadata(), state_->options, width, height);
+}
+
+const EngineOptions& Engine::options() const {
+    return state_->options;
+}
+
+void Engine::setOptions(const EngineOptions& given) {
+    State& state = *state_;
+    EngineOptions wanted = state.options;
+    wanted.selection = given.selection;
+    wanted.selection.useImagery &= state.resident.tree().hasImagery();
+    wanted.render = given.render;
+    wanted.render.method = state.options.render.method;
+    wanted.earth = given.earth;
+    wanted.sunTime = given.sunTime;
+    wanted.features.statistics = given.features.statistics;
+    wanted = settled(wanted, state.source);
+
+    const int width = state.targets.width(), height = state.targets.height();
+    if (wanted.sunTime != state.options.sunTime) state.sunClock = clockOf(state.source.metadata(), wanted);
+    if (wanted.earth != state.options.earth) state.earth = earthOf(state.source.metadata(), wanted, width, height);
+    if (wanted.features != state.options.features)
+        state.targets = FrameTargets(width, height, wanted.features, wanted.colour);
+    state.options = std::move(wanted);
+    setExaggeration(given.exaggeration);
+}
+
 void Engine::setExaggeration(double factor) {
     TERRAY_CHECK_OP(factor, >=, kLeastExaggeration);
     TERRAY_CHECK_OP(factor, <=, kGreatestExaggeration);
     state_->options.exaggeration = factor;
+}
+
+void Engine::freezeSelection(bool frozen) {
+    state_->frozen = frozen && !state_->selection.nodes.empty();
 }
 
 void Engine::setEdits(EditList edits) {
@@ -410,6 +459,10 @@ const std::vector<DrawNode>& Engine::nodes() const {
 
 const View& Engine::view() const {
     return state_->view;
+}
+
+View Engine::viewFrom(const Camera& camera) const {
+    return state_->viewFrom(camera);
 }
 
 const EarthModel& Engine::earth() const {
@@ -441,6 +494,14 @@ glm::dvec3 Engine::worldFromHit(const DrawNode& node, const glm::vec4& hit) cons
     const HeightEncoding& encoding = heights->encoding;
     return {bounds.west + hit.x * spacing, bounds.north - hit.y * spacing,
             (static_cast<double>(encoding.offset) + hit.z) * encoding.metresPerCode()};
+}
+
+std::optional<glm::dvec3> Engine::placeAt(int column, int row) const {
+    const FrameTargets& targets = state_->targets;
+    if (column < 0 || row < 0 || column >= targets.width() || row >= targets.height()) return {};
+    const uint32_t number = targets.readNode(column, row);
+    if (number == 0 || number > nodes().size()) return {};
+    return worldFromHit(nodes()[number - 1], targets.readHit(column, row));
 }
 
 }  // namespace terray

@@ -104,9 +104,24 @@ class Engine {
     /// are exactly vertical, say. The sun stays where it is.
     FrameReport drawView(const View& view, bool waitForTiles);
 
+    /// Draws pictures of another size from the next frame on, over the earth that an engine of that size draws. Tiles
+    /// stay.
+    void resize(int width, int height);
+
+    /// What the engine draws by, settled for its dataset.
+    [[nodiscard]] const EngineOptions& options() const;
+    /// From the next frame on pictures are drawn by the selection, render, earth, exaggeration, sunTime and
+    /// features.statistics of these options; everything else stays as it was at construction. Photos cannot come where
+    /// there were none then. Throws as the constructor does for a sun's time.
+    void setOptions(const EngineOptions& options);
+
     /// From the next frame on heights, the camera's among them, are drawn multiplied by this. No tile is loaded anew;
     /// selection refines for the larger errors.
     void setExaggeration(double factor);
+
+    /// Frozen, frames go on drawing the nodes of the last one, whatever the camera sees, and nothing is paged; edits
+    /// wait. For looking at what was selected from elsewhere.
+    void freezeSelection(bool frozen);
 
     /// From the next frame on the ground is edited so, in place of the edits before; the dataset is not touched. Tiles
     /// that the change concerns are made anew from their stored codes, in that frame where main memory holds them;
@@ -120,8 +135,10 @@ class Engine {
     /// The nodes of the last frame; node index plus 1 is what targets().readNodes() holds.
     [[nodiscard]] const std::vector<DrawNode>& nodes() const;
     [[nodiscard]] const View& view() const;
+    /// The view that a frame of this camera has: size, earth and exaggeration as they are now.
+    [[nodiscard]] View viewFrom(const Camera& camera) const;
     [[nodiscard]] const GpuTiles& tiles() const;
-    /// Over what the dataset is drawn: decided at construction, for pictures of 45 degrees.
+    /// Over what the dataset is drawn: decided at construction and at a change of size, for pictures of 45 degrees.
     [[nodiscard]] const EarthModel& earth() const;
     /// What the ground shows, with what was settled from the dataset: heights, contour interval, tolerance.
     [[nodiscard]] const ShadingOptions& shading() const;
@@ -132,6 +149,9 @@ class Engine {
 
     /// Where in the dataset a hit of the last frame lies, in double: metres, z a height, not exaggerated.
     [[nodiscard]] glm::dvec3 worldFromHit(const DrawNode& node, const glm::vec4& hit) const;
+    /// Where in the dataset the ground of a pixel of the last frame lies, likewise; none in the sky and outside the
+    /// picture. Reads one pixel back.
+    [[nodiscard]] std::optional<glm::dvec3> placeAt(int column, int row) const;
 
   private:
     struct State;

@@ -140,6 +140,19 @@ Grid<uint32_t> FrameTargets::readNodes() const {
     return readTexture<uint32_t>(node, {width_, height_}, GL_RED_INTEGER, GL_UNSIGNED_INT);
 }
 
+glm::vec4 FrameTargets::readHit(int column, int row) const {
+    glm::vec4 texel(0);
+    glGetTextureSubImage(hit.name(), 0, column, height_ - 1 - row, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof(texel), &texel);
+    return texel;
+}
+
+uint32_t FrameTargets::readNode(int column, int row) const {
+    uint32_t texel = 0;
+    glGetTextureSubImage(node.name(), 0, column, height_ - 1 - row, 0, 1, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                         sizeof(texel), &texel);
+    return texel;
+}
+
 Grid<uint32_t> FrameTargets::readSteps() const {
     return readTexture<uint32_t>(steps, {width_, height_}, GL_RED_INTEGER, GL_UNSIGNED_INT);
 }

@@ -74,6 +74,9 @@ class FrameTargets {
     [[nodiscard]] Grid<glm::vec4> readHits() const;
     /// Index of the node hit plus 1; 0 is sky.
     [[nodiscard]] Grid<uint32_t> readNodes() const;
+    /// The same of one pixel; column and row from the upper-left corner, inside the picture.
+    [[nodiscard]] glm::vec4 readHit(int column, int row) const;
+    [[nodiscard]] uint32_t readNode(int column, int row) const;
     /// Steps of the pixel's ray over all nodes (kStepCountMask), and kOutOfStepsBit. Needs FeatureSet::statistics.
     [[nodiscard]] Grid<uint32_t> readSteps() const;
     /// Steps of the pixel's shadow rays. Needs FeatureSet::statistics, and that the last frame had shadows.

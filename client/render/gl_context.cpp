@@ -188,11 +188,7 @@ HeadlessContext::HeadlessContext(const Options& options) : state_(std::make_uniq
         state_->display = made.display;
         state_->context = made.context;
         state_->strings = currentGlStrings(candidate.name);
-        if (options.debug) {
-            glEnable(GL_DEBUG_OUTPUT);
-            glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-            glDebugMessageCallback(collectMessage, &state_->messages);
-        }
+        if (options.debug) collectDebugMessages(state_->messages);
         return;
     }
     throw Error(ExitCode::graphics, std::string(kAttempt) + ":" + report + "\n" + kRemedy);
@@ -210,6 +206,12 @@ const GlStrings& HeadlessContext::strings() const {
 
 std::string HeadlessContext::takeDebugMessages() {
     return std::exchange(state_->messages, {});
+}
+
+void collectDebugMessages(std::string& messages) {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(collectMessage, &messages);
 }
 
 GlStrings currentGlStrings(std::string platform) {

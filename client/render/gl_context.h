@@ -41,6 +41,10 @@ class HeadlessContext {
 /// Strings of the context that is current. @param platform  how it was made
 [[nodiscard]] GlStrings currentGlStrings(std::string platform);
 
+/// From now on errors and undefined behaviour that the driver reports in the current context, which should be a debug
+/// context, are appended to `messages`, one a line. @param messages  outlives the context
+void collectDebugMessages(std::string& messages);
+
 /// Throws Error(graphics) naming every missing thing when the current context lacks what the renderer needs: GL 4.5,
 /// S3TC with sRGB, anisotropic filtering, enough array layers.
 void requireRendererFeatures();

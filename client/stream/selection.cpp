@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "client/stream/selection_geometry.h"
 #include "common/check.h"
@@ -353,6 +354,27 @@ Pixels screenError(Metres error, Metres distance, const View& view) {
 Selection select(const TileTree& tree, const View& view, const SelectionOptions& options) {
     TERRAY_CHECK_OP(options.maxNodes, >, size_t{0});
     return Fitting(tree, view, options).run();
+}
+
+void sortFrontToBack(std::vector<DrawNode>& nodes, const Tiling& tiling, const glm::dvec3& eye) {
+    // A path from the root as a number, two bits a level: at each, which of the four the ray meets first.
+    const auto rank = [&](const TileId& cell) {
+        uint64_t path = 0;
+        for (uint32_t level = 0; level < kMaxTileLevel; ++level) {
+            uint64_t place = 0;
+            if (level < cell.level) {
+                const auto order = frontToBack(cell.ancestor(cell.level - level), eye, tiling);
+                const uint32_t quadrant = cell.ancestor(cell.level - level - 1).quadrant();
+                place = static_cast<uint64_t>(std::find(order.begin(), order.end(), quadrant) - order.begin());
+            }
+            path = path << 2 | place;
+        }
+        return path;
+    };
+    std::vector<std::pair<uint64_t, DrawNode>> ranked;
+    for (const DrawNode& node : nodes) ranked.emplace_back(rank(node.cell), node);
+    std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (size_t n = 0; n < nodes.size(); ++n) nodes[n] = ranked[n].second;
 }
 
 }  // namespace terray

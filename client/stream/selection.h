@@ -95,4 +95,8 @@ struct Selection {
 /// A pure function: same tree, view and options, same answer. The root tiles must be resident.
 [[nodiscard]] Selection select(const TileTree& tree, const View& view, const SelectionOptions& options);
 
+/// Puts nodes whose cells do not overlap in the order in which rays from an eye meet them: a list that was selected for
+/// one eye can then be drawn from another.
+void sortFrontToBack(std::vector<DrawNode>& nodes, const Tiling& tiling, const glm::dvec3& eye);
+
 }  // namespace terray

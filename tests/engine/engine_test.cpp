@@ -250,5 +250,69 @@ TEST_F(EngineTest, AFrameAccountsForItsTime) {
     EXPECT_EQ(drawing->drawFrame(lowCamera(heights_), false).waitMs, 0);
 }
 
+TEST_F(EngineTest, ChangedOptionsAndSizesDrawWhatAnEngineDrawsThatBeganWithThem) {
+    const Camera camera = lowCamera(both_);
+    EngineOptions changed;
+    changed.selection.tolerance = Pixels(3);
+    changed.render.shading.mode = Shading::slope;
+    changed.render.sunDirection = {1, 0, 1};
+    changed.render.surface = Surface::bilinear;
+    changed.earth.shape = EarthShape::curved;
+    changed.exaggeration = 2;
+    const Picture wanted = waited(both_, camera, changed);
+    const Picture before = waited(both_, camera);
+
+    Engine drawing(both_, shaders_, {}, 64, 48);
+    drawing.drawFrame(camera, true);
+    drawing.setOptions(changed);
+    drawing.resize(kWidth, kHeight);
+    drawing.drawFrame(camera, true);
+    EXPECT_TRUE(drawing.targets().readSrgb() == wanted);
+    drawing.setOptions({});
+    drawing.drawFrame(camera, true);
+    EXPECT_TRUE(drawing.targets().readSrgb() == before) << "photo and all";
+}
+
+TEST_F(EngineTest, AFrozenSelectionIsDrawnFromElsewhereAsIfItHadBeenSelectedThere) {
+    const Camera camera = lowCamera(heights_);
+    Camera high = camera;
+    high.position.z += 3000;
+    high.pitch = radiansFromDegrees(-89);
+    const auto drawing = engine(heights_);
+    drawing->drawFrame(camera, true);
+    const size_t nodes = drawing->nodes().size();
+    drawing->freezeSelection(true);
+    drawing->drawFrame(high, true);
+    EXPECT_EQ(drawing->nodes().size(), nodes);
+    const Picture raster = drawing->targets().readSrgb();
+    EXPECT_GT(groundPixels(*drawing), 0);
+    // Rays meet the nodes in order: by the other launch, too, the same picture.
+    EngineOptions compute = drawing->options();
+    compute.render.launch = Launch::compute;
+    drawing->setOptions(compute);
+    drawing->drawFrame(high, true);
+    EXPECT_TRUE(drawing->targets().readSrgb() == raster);
+    drawing->freezeSelection(false);
+    drawing->drawFrame(high, true);
+    EXPECT_NE(drawing->nodes().size(), nodes);
+}
+
+TEST_F(EngineTest, APixelsPlaceIsThatOfItsHit) {
+    const auto drawing = engine(heights_);
+    drawing->drawFrame(lowCamera(heights_), true);
+    const Grid<glm::vec4> hits = drawing->targets().readHits();
+    const Grid<uint32_t> nodes = drawing->targets().readNodes();
+    for (int row = 0; row < kHeight; row += 7)
+        for (int column = 0; column < kWidth; column += 11) {
+            const auto place = drawing->placeAt(column, row);
+            ASSERT_EQ(place.has_value(), nodes.at(column, row) != 0) << column << ' ' << row;
+            if (!place) continue;
+            const DrawNode& node = drawing->nodes().at(nodes.at(column, row) - 1);
+            EXPECT_EQ(*place, drawing->worldFromHit(node, hits.at(column, row)));
+        }
+    EXPECT_FALSE(drawing->placeAt(-1, 0).has_value());
+    EXPECT_FALSE(drawing->placeAt(0, kHeight).has_value());
+}
+
 }  // namespace
 }  // namespace terray

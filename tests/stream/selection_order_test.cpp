@@ -61,6 +61,21 @@ TEST(SelectionOrder, NoRayMeetsALaterNodeBeforeAnEarlierOne) {
     EXPECT_GT(pairs, 5000u);
 }
 
+TEST(SelectionOrder, AShuffledListIsSortedIntoTheOrderOfItsSelection) {
+    const FakeDataset& dataset = hillyDataset();
+    Random random(5);
+    for (int round = 0; round < 200; ++round) {
+        const TileTree tree = randomTree(dataset, random);
+        const View view = randomView(dataset, random);
+        const std::vector<DrawNode> selected = select(tree, view, {}).nodes;
+        std::vector<DrawNode> nodes(selected.rbegin(), selected.rend());
+        for (size_t n = 1; n < nodes.size(); ++n)
+            std::swap(nodes[n], nodes[static_cast<size_t>(random.uniform(0, static_cast<double>(n)))]);
+        sortFrontToBack(nodes, tree.tiling(), view.eye);
+        for (size_t n = 0; n < nodes.size(); ++n) ASSERT_EQ(nodes[n].cell, selected[n].cell) << round;
+    }
+}
+
 TEST(SelectionOrder, FrustumKeepsEveryBoxThatARayMeets) {
     Random random(2);
     const FakeDataset& dataset = hillyDataset();

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "client/render/frame_targets.h"
+#include "common/grid.h"
+#include "common/rgba.h"
+
+namespace terray {
+
+/// Brings pictures to the window of the current context. GL thread only.
+class Screen {
+  public:
+    Screen();
+
+    /// Fills the window's back buffer with a picture, scaled bilinearly where their sizes differ. The picture's bytes
+    /// are sRGB already (ColourFormat::srgb8). @param width, height  of the window, pixels
+    void show(const FrameTargets& targets, int width, int height);
+
+  private:
+    GlFramebuffer framebuffer_;
+};
+
+/// What the window's back buffer holds, row 0 at the top, alpha 255: before buffers are swapped.
+[[nodiscard]] Grid<Rgba> readScreen(int width, int height);
+
+}  // namespace terray
