@@ -21,8 +21,11 @@ int64_t cellOf(double samples) {
 
 }  // namespace
 
-GroundTiles::GroundTiles(const TileSource& source, EditList edits, size_t mostTiles)
-    : source_(source), edits_(std::move(edits)), mostTiles_(mostTiles) {
+GroundTiles::GroundTiles(const TileSource& source, Options options)
+    : source_(source),
+      edits_(std::move(options.edits)),
+      mostTiles_(options.mostTiles),
+      finestLevel_(std::min(options.finestLevel.value_or(kMaxTileLevel), source.metadata().tiling.finestLevel)) {
     Tile root = read({});
     if (!root)
         throw Error(ExitCode::dataset, "cannot read height tile 0/0/0; terray-preprocess verify tells what is damaged");
@@ -77,12 +80,11 @@ void GroundTiles::keep(const TileId& id, Tile tile) {
 
 TileId GroundTiles::finestOver(glm::dvec2 place) const {
     const Tiling& tiling = source_.metadata().tiling;
-    const double side = tiling.tileSide(tiling.finestLevel),
-                 last = std::ldexp(1.0, static_cast<int>(tiling.finestLevel)) - 1;
+    const double side = tiling.tileSide(finestLevel_), last = std::ldexp(1.0, static_cast<int>(finestLevel_)) - 1;
     const auto index = [&](double metres) {
         return static_cast<uint32_t>(std::clamp(std::floor(metres / side), 0.0, last));
     };
-    return {tiling.finestLevel, index(place.x - tiling.west), index(tiling.north - place.y)};
+    return {finestLevel_, index(place.x - tiling.west), index(tiling.north - place.y)};
 }
 
 GroundTiles::Way GroundTiles::wayTo(const TileId& finest) {

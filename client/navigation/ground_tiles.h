@@ -21,11 +21,15 @@ namespace terray {
 /// Holds a bounded number of decoded tiles, the least recently asked first out. All functions are for one thread.
 class GroundTiles final : public Ground {
   public:
-    static constexpr size_t kMostTiles = 64;  ///< 34 MB
+    struct Options {
+        EditList edits;                       ///< of the ground
+        size_t mostTiles = 64;                ///< more than there are levels; 34 MB
+        std::optional<uint32_t> finestLevel;  ///< finer tiles are not read; none: the dataset's
+    };
 
     /// Reads the root tile. Throws Error(dataset) when it cannot be had.
-    /// @param source  outlives this object  @param edits  of the ground  @param mostTiles  more than there are levels
-    explicit GroundTiles(const TileSource& source, EditList edits = {}, size_t mostTiles = kMostTiles);
+    /// @param source  outlives this object
+    GroundTiles(const TileSource& source, Options options);
     ~GroundTiles() override;
     GroundTiles(const GroundTiles&) = delete;
     GroundTiles& operator=(const GroundTiles&) = delete;
@@ -66,6 +70,7 @@ class GroundTiles final : public Ground {
     const TileSource& source_;
     EditList edits_;
     const size_t mostTiles_;
+    const uint32_t finestLevel_;
     bool columns_ = false;
     std::mutex mutex_;
     std::condition_variable changed_;

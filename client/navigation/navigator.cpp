@@ -78,8 +78,10 @@ void Navigator::setMode(NavigationMode mode) {
     release();
     if (mode == NavigationMode::map) camera_.pitch = Radians(-kQuarterTurn);
     if (wasMap) camera_.pitch = Radians(-kQuarterTurn / 2);
-    if (mode == NavigationMode::walk) camera_.pitch = Radians(0);
-    if (mode == NavigationMode::walk) keepAboveGround(false);
+    if (mode == NavigationMode::walk) {
+        camera_.pitch = Radians(0);
+        keepAboveGround(true);
+    }
 }
 
 void Navigator::setFieldOfView(Radians vertical) {
@@ -120,8 +122,9 @@ void Navigator::step(const Motion& motion, double seconds) {
         flight_->seconds += seconds;
         camera_ = flight_->path.at(flight_->seconds);
         const bool over = flight_->seconds >= flight_->path.seconds();
-        // The last place is one that somebody chose; ground that is not known yet does not lift it.
-        unsettled_ = over;
+        // By the time it arrives the ground there is known, and does not lift it for what it might be.
+        (void)scene_.ground->under(glm::dvec2(flight_->path.goal().position));
+        unsettled_ = false;
         if (over) flight_.reset();
         keepAboveGround(true);
         return;

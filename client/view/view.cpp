@@ -1,5 +1,7 @@
 #include "client/view/view.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -9,45 +11,19 @@
 #include <glm/common.hpp>
 
 #include "client/engine/dataset_camera.h"
-#include "client/engine/dataset_options.h"
 #include "client/engine/engine.h"
-#include "client/engine/engine_options.h"
 #include "client/engine/program.h"
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
-#include "client/stream/camera.h"
-#include "common/command_line.h"
+#include "client/view/fly.h"
+#include "client/view/snapshot.h"
+#include "client/view/view_options.h"
 #include "common/output_file.h"
 
 namespace terray {
 namespace {
 
 enum class PictureKind { png, exr };
-
-struct ViewOptions {
-    DatasetCommandLine dataset;
-    bool headless = false;
-    std::string camera;
-    int width = 1280;
-    int height = 720;
-    std::string out;
-    bool force = false;
-    EngineCommandLine engine;
-};
-
-bool parse(ViewOptions& options, const std::vector<std::string>& arguments) {
-    CommandLine line("terray-view", "Draws one picture of a dataset, when all of its tiles are loaded.");
-    options.dataset.declare(line);
-    line.flag("--headless", options.headless, "draw without a window");
-    line.option("--camera", options.camera, "LON,LAT,HEIGHT,HEADING,PITCH[,FOV]",
-                "degrees and metres; X,Y instead of LON,LAT where the dataset has no coordinate system or this build "
-                "no PROJ (an overview of the whole dataset)");
-    line.size("--size", options.width, options.height, "of the picture in pixels (1280x720)");
-    line.option("--out", options.out, "FILE.png|FILE.exr", "where the picture goes");
-    line.flag("--force", options.force, "replace an existing picture");
-    options.engine.declare(line);
-    return line.parse(arguments);
-}
 
 PictureKind kindOf(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
@@ -61,15 +37,6 @@ void requireWritable(const std::filesystem::path& path, bool force) {
     if (std::filesystem::exists(path) && !force)
         throw Error(ExitCode::output, path.string() + " exists (give --force to replace it)");
     const OutputFile probe(path.string() + ".partial");  // removed again at once
-}
-
-/// The camera that was given, if one was.
-std::optional<Camera> cameraOf(const ViewOptions& options, const DatasetMetadata& metadata) {
-    const std::optional<Projection> projection = projectionOf(metadata);
-    if (options.camera.empty()) return {};
-    Result<Camera> camera = parseCamera(options.camera, projection ? &*projection : nullptr);
-    if (!camera) throw Error(ExitCode::usage, "--camera: " + camera.failure().message);
-    return *camera;
 }
 
 EngineOptions engineOptions(const ViewOptions& options, PictureKind kind, const DatasetMetadata& metadata) {
@@ -111,13 +78,7 @@ MeasuredPicture measure(const Engine& engine, const Camera& camera) {
     return picture;
 }
 
-}  // namespace
-
-ExitCode runView(const std::vector<std::string>& arguments) {
-    ViewOptions options;
-    if (!parse(options, arguments)) return ExitCode::ok;
-    if (!options.headless)
-        throw Error(ExitCode::unsupported, "the window arrives with a later version: give --headless and --out");
+ExitCode drawHeadless(const ViewOptions& options) {
     if (options.out.empty()) throw Error(ExitCode::usage, "--headless needs --out FILE.png or FILE.exr");
     const std::filesystem::path out = options.out;
     const PictureKind kind = kindOf(out);
@@ -125,7 +86,7 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     const std::unique_ptr<TileSource> source = options.dataset.open();
     EngineOptions chosen = engineOptions(options, kind, source->metadata());
     options.engine.place(*source, chosen);
-    const std::optional<Camera> given = cameraOf(options, source->metadata());
+    const std::optional<Camera> given = options.cameraOver(source->metadata());
     requireWritable(out, options.force);
 
     const HeadlessContext context;
@@ -154,6 +115,27 @@ ExitCode runView(const std::vector<std::string>& arguments) {
     std::printf("earth: %s\n", engine.earth().description().c_str());
     if (engine.shading().mode != Shading::photo) std::printf("shading: %s\n", description(engine.shading()).c_str());
     return ExitCode::ok;
+}
+
+/// The arguments, those of a picture's JSON in place of --reproduce FILE.
+Arguments reproduced(const Arguments& arguments) {
+    const auto option = std::find(arguments.begin(), arguments.end(), "--reproduce");
+    if (option == arguments.end()) return arguments;
+    if (std::next(option) == arguments.end()) throw Error(ExitCode::usage, "--reproduce: expected FILE.json after it");
+    Arguments all = reproducingArguments(*std::next(option));
+    all.insert(all.end(), arguments.begin(), option);
+    all.insert(all.end(), option + 2, arguments.end());
+    return all;
+}
+
+}  // namespace
+
+ExitCode runView(const std::vector<std::string>& given) {
+    const auto started = std::chrono::steady_clock::now();
+    const Arguments arguments = reproduced(given);
+    ViewOptions options;
+    if (!options.parse(arguments)) return ExitCode::ok;
+    return options.headless ? drawHeadless(options) : fly(options, arguments, started);
 }
 
 }  // namespace terray

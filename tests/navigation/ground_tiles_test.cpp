@@ -22,7 +22,7 @@ glm::dvec2 placeIn(const GroundRect& ground, Random& random) {
 
 TEST(GroundTiles, BoundTheGroundAtOnceAndKnowItInTheEnd) {
     const AnalyticDataset dataset({.finestLevel = 2, .spacing = 4});
-    GroundTiles tiles(dataset);
+    GroundTiles tiles(dataset, {});
     Random random(1);
     for (int n = 0; n < 60; ++n) {
         const glm::dvec2 place = placeIn(dataset.metadata().groundBounds(), random);
@@ -40,7 +40,7 @@ TEST(GroundTiles, BoundTheGroundAtOnceAndKnowItInTheEnd) {
 
 TEST(GroundTiles, ColumnsAreLevelOverTheirCells) {
     const AnalyticDataset dataset({.finestLevel = 1, .spacing = 4});
-    GroundTiles tiles(dataset);
+    GroundTiles tiles(dataset, {});
     tiles.setColumns(true);
     const GroundRect ground = dataset.metadata().groundBounds();
     const glm::dvec2 corner(ground.west + 400, ground.north - 400);
@@ -52,7 +52,7 @@ TEST(GroundTiles, ColumnsAreLevelOverTheirCells) {
 
 TEST(GroundTiles, EndAtTheDatasetsEdge) {
     const AnalyticDataset dataset({.finestLevel = 1, .spacing = 4});
-    GroundTiles tiles(dataset);
+    GroundTiles tiles(dataset, {});
     const GroundRect ground = dataset.metadata().groundBounds();
     EXPECT_TRUE(tiles.under({ground.west, ground.north}).has_value());
     EXPECT_FALSE(tiles.under({ground.west - 1, ground.north}).has_value());
@@ -64,7 +64,7 @@ TEST(GroundTiles, StandOnEditedGround) {
     const AnalyticDataset dataset({.finestLevel = 1, .spacing = 4});
     const GroundRect ground = dataset.metadata().groundBounds();
     const glm::dvec2 place(ground.west + 1000, ground.north - 1000);
-    GroundTiles tiles(dataset, {{.line = {{place, place}}, .radius = 200, .full = 100, .height = 300}});
+    GroundTiles tiles(dataset, {.edits = {{.line = {{place, place}}, .radius = 200, .full = 100, .height = 300}}});
     const auto raised = settled(tiles, place);
     ASSERT_TRUE(raised.has_value());
     EXPECT_NEAR(raised->height, AnalyticDataset::heightAt(place.x, place.y) + 300, 0.1);
@@ -73,19 +73,19 @@ TEST(GroundTiles, StandOnEditedGround) {
 TEST(GroundTiles, ATileThatCannotBeReadLeavesTheBoundOfTheOneAbove) {
     AnalyticDataset dataset({.finestLevel = 1, .spacing = 4});
     dataset.lose(TileLayer::heights, TileId{}.child(0));
-    GroundTiles tiles(dataset);
+    GroundTiles tiles(dataset, {});
     const GroundRect ground = dataset.metadata().groundBounds();
     const auto height = settled(tiles, {ground.west + 100, ground.north - 100});
     ASSERT_TRUE(height.has_value());
     EXPECT_GT(height->uncertainty, 0);
     EXPECT_FALSE(tiles.learning()) << "it is not asked for again and again";
     dataset.lose(TileLayer::heights, {});
-    EXPECT_THROW(GroundTiles{dataset}, Error);
+    EXPECT_THROW(GroundTiles(dataset, {}), Error);
 }
 
 TEST(GroundTiles, HoldNoMoreThanTheyMay) {
     const AnalyticDataset dataset({.finestLevel = 2, .spacing = 4});
-    GroundTiles tiles(dataset, {}, 6);
+    GroundTiles tiles(dataset, {.mostTiles = 6});
     Random random(2);
     for (int n = 0; n < 200; ++n) {
         const auto height = settled(tiles, placeIn(dataset.metadata().groundBounds(), random));
@@ -93,6 +93,16 @@ TEST(GroundTiles, HoldNoMoreThanTheyMay) {
         EXPECT_EQ(height->uncertainty, 0);
     }
     EXPECT_GT(dataset.reads(), 50u) << "of 21 tiles: what was let go is read again";
+}
+
+TEST(GroundTiles, OfACoarserLevelAreReadNoFurther) {
+    const AnalyticDataset dataset({.finestLevel = 2, .spacing = 4});
+    GroundTiles tiles(dataset, {.finestLevel = 1});
+    const GroundRect ground = dataset.metadata().groundBounds();
+    const auto height = settled(tiles, {ground.west + 700, ground.north - 700});
+    ASSERT_TRUE(height.has_value());
+    EXPECT_GT(height->uncertainty, 0) << "the finest may be higher";
+    EXPECT_EQ(dataset.reads(), 2u);
 }
 
 }  // namespace
