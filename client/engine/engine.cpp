@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "client/engine/draw_costs_file.h"
+#include "client/engine/engine_setup.h"
 #include "client/engine/program.h"
 #include "client/engine/resident_tiles.h"
 #include "client/engine/sun_clock.h"
@@ -20,9 +21,6 @@
 namespace terray {
 namespace {
 
-/// Tiles that are asked for or wait for upload at a time, at most: about 34 MB of heights. More than a frame uploads by
-/// default, so reader and decoders stay busy; few enough that refinement follows the most urgent tiles.
-constexpr size_t kMaxPendingTiles = 64;
 /// Tiles that the tree may know before it forgets what is far from resident ones: about 25 MB.
 constexpr size_t kMaxKnownTiles = size_t{1} << 18;
 constexpr uint64_t kUnlimited = std::numeric_limits<uint64_t>::max();
@@ -34,43 +32,6 @@ double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-bool usesImagery(const TileSource& source, const EngineOptions& options) {
-    return options.selection.useImagery && source.metadata().imageryLevel.has_value() &&
-           needsOf(options.render.shading.mode).photoTiles;
-}
-
-/// What the mode measures by, where the caller has not said: the dataset's heights, and the selection's tolerance.
-void settleShading(ShadingOptions& shading, const DatasetMetadata& metadata, Pixels tolerance) {
-    shading.lowest = Metres(metadata.minHeight);
-    shading.highest = Metres(metadata.maxHeight);
-    if (shading.contourInterval == Metres(0))
-        shading.contourInterval = automaticContourInterval(shading.lowest, shading.highest);
-    shading.tolerance = tolerance;
-}
-
-EarthModel earthOf(const DatasetMetadata& metadata, const EngineOptions& options, int width, int height) {
-    return {metadata, options.earth, options.selection.tolerance.value(),
-            viewOf(Camera(), width, height).focalPixels()};
-}
-
-std::optional<SunClock> clockOf(const DatasetMetadata& metadata, const EngineOptions& options) {
-    if (!options.sunTime) return {};
-    return std::optional<SunClock>(std::in_place, *options.sunTime, metadata);
-}
-
-/// The options as this dataset and this shading let them be: imagery is on only when there is some, and what the
-/// picture does not show is off.
-EngineOptions settled(EngineOptions options, const TileSource& source) {
-    options.features.imagery = options.selection.useImagery = usesImagery(source, options);
-    settleShading(options.render.shading, source.metadata(), options.selection.tolerance);
-    const ShadingNeeds needs = needsOf(options.render.shading.mode);
-    options.features.statistics |= needs.steps || needs.shadowSteps;
-    options.render.sky &= needs.sky;
-    if (!needs.light) options.render.visualRange.reset();
-    if (!needs.light && !needs.shadowSteps) options.render.shadows.reset();
-    return options;
-}
-
 /// Where the camera is expected, tiles are read ahead: what it sees when these are over.
 constexpr std::array<double, 2> kSecondsAhead{0.4, 1.0};
 constexpr size_t kMostTilesAhead = 32;
@@ -78,50 +39,6 @@ constexpr size_t kMostTilesAhead = 32;
 /// A tile that was uploaded is evicted and needed again within one wait only while what is found out of the ground
 /// makes detail be given up.
 constexpr int kMostUploadsInAWait = 3;
-
-/// Of one tile that waits for upload; photos with their chains take less.
-uint64_t pendingTileBytes() {
-    return hostBytesOf({TileLayer::heights, {}});
-}
-
-/// Tiles that may wait for upload: what a quarter of main memory's budget holds.
-size_t mostPendingTiles(uint64_t hostBudgetBytes) {
-    return static_cast<size_t>(std::clamp<uint64_t>(hostBudgetBytes / 4 / pendingTileBytes(), 1, kMaxPendingTiles));
-}
-
-/// The pager's part of the budget: without those that wait.
-PagerOptions withoutPending(PagerOptions options) {
-    const uint64_t pending = mostPendingTiles(options.hostBudgetBytes) * pendingTileBytes();
-    options.hostBudgetBytes -= std::min(options.hostBudgetBytes, pending);
-    return options;
-}
-
-/// How many tiles a view may need beside the root, for all of them to come whatever is drawn meanwhile. One slot is the
-/// root's. With m of n needed tiles lacking, n - m slots hold the others and at most m what stands in for them (each
-/// has one stand-in), so of n + 2 slots one is always free for the next, and nothing that is drawn must go.
-size_t tilesBesideRoot(uint32_t slots, uint64_t tiles) {
-    if (slots >= tiles) return std::numeric_limits<size_t>::max();
-    return slots > 2 ? slots - 2 : 0;
-}
-
-/// The greatest drop per squared metre over the middle of the dataset; it changes by parts in 100 over the largest.
-double greatestBend(const EarthModel& earth, const DatasetMetadata& metadata) {
-    const GroundRect ground = metadata.groundBounds();
-    const auto bend = earth.at({(ground.west + ground.east) / 2, (ground.south + ground.north) / 2, 0});
-    return bend ? std::max(bend->xx, bend->yy) + std::abs(bend->xy) / 2 : 0;
-}
-
-GpuTilesOptions slotOptions(const TileSource& source, const EngineOptions& options, const EarthModel& earth) {
-    const bool imagery = usesImagery(source, options);
-    return {.heightBudgetBytes = options.gpuHeightBytes,
-            .imageryBudgetBytes = imagery ? options.gpuImageryBytes : 0,
-            .heightTiles = source.metadata().heightTiles,
-            .imageryTiles = imagery ? source.metadata().imageryTiles : 0,
-            .method = {.method = options.render.method,
-                       .tiling = source.metadata().tiling,
-                       .earthBend = greatestBend(earth, source.metadata())},
-            .measurePreparation = options.measurePreparation};
-}
 
 }  // namespace
 
@@ -181,7 +98,7 @@ struct Engine::State {
     FrameReport report;
     std::optional<EditList> newEdits;
     UploadPace uploadPace;
-    size_t mostPending;  ///< tiles that may wait for upload
+    size_t mostPending;   ///< tiles that may wait for upload
     bool frozen = false;  ///< the selection is that of an earlier frame
     Pager pager;          // last: its threads end first
 };
@@ -412,6 +329,8 @@ void Engine::setOptions(const EngineOptions& given) {
     EngineOptions wanted = state.options;
     wanted.selection = given.selection;
     wanted.selection.useImagery &= state.resident.tree().hasImagery();
+    wanted.selection.maxHeightTiles = state.options.selection.maxHeightTiles;  // what the budgets hold stays
+    wanted.selection.maxImageryTiles = state.options.selection.maxImageryTiles;
     wanted.render = given.render;
     wanted.render.method = state.options.render.method;
     wanted.earth = given.earth;
