@@ -63,8 +63,10 @@ Bytes encode(const Grid<Rgba>& photo, const EncodeBlock& encodeBlock) {
 double psnr(const Grid<Rgba>& a, const Grid<Rgba>& b) {
     double sum = 0;
     for (size_t i = 0; i < a.cells().size(); ++i)
-        for (size_t channel = 0; channel < 3; ++channel)
-            sum += std::pow(double{a.cells()[i][channel]} - double{b.cells()[i][channel]}, 2);
+        for (size_t channel = 0; channel < 3; ++channel) {
+            const int difference = a.cells()[i][channel] - b.cells()[i][channel];
+            sum += difference * difference;
+        }
     return 10 * std::log10(255.0 * 255 * 3 * static_cast<double>(a.cells().size()) / sum);
 }
 
