@@ -22,7 +22,6 @@ struct KmlView {
     double tilt = 0;                      ///< of the view axis: 0 straight down, 90 to the horizon
     std::optional<double> range;          ///< metres from the eye to the place looked at
     std::optional<double> horizontalFov;  ///< gx:horizFov
-    bool operator==(const KmlView&) const = default;
 };
 
 /// One element of a playlist.
@@ -30,14 +29,12 @@ struct KmlStep {
     double seconds = 0;           ///< of the way there, or of the wait
     std::optional<KmlView> view;  ///< none: gx:Wait
     bool smooth = false;          ///< gx:flyToMode: passes by; else (bounce) it comes to rest
-    bool operator==(const KmlStep&) const = default;
 };
 
 /// A gx:Tour.
 struct KmlTour {
     std::string name;
     std::vector<KmlStep> steps;
-    bool operator==(const KmlTour&) const = default;
 };
 
 /// The first gx:Tour of a KML document: its gx:FlyTo and gx:Wait; sounds, updates and pauses for a click are left out.

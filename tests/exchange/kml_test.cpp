@@ -1,5 +1,6 @@
 // KML tours: ours come back as they were, those of other programs are flown as they say, broken ones are told apart.
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -35,7 +36,23 @@ TEST(Kml, ATourComesBackAsItWas) {
     if (!TERRAY_WITH_TRACKS) return;
     const auto back = parseKml(toKml(tour));
     ASSERT_TRUE(back.ok()) << back.failure().message;
-    EXPECT_EQ(*back, tour);
+    ASSERT_EQ(back->steps.size(), tour.steps.size());
+    EXPECT_EQ(back->name, tour.name);
+    for (size_t n = 0; n < tour.steps.size(); ++n) {
+        const KmlStep &wanted = tour.steps[n], &found = back->steps[n];
+        EXPECT_EQ(found.seconds, wanted.seconds) << n;
+        EXPECT_EQ(found.smooth, wanted.smooth) << n;
+        ASSERT_EQ(found.view.has_value(), wanted.view.has_value()) << n;
+        if (!wanted.view) continue;
+        EXPECT_EQ(found.view->place.longitude, wanted.view->place.longitude) << n;
+        EXPECT_EQ(found.view->place.latitude, wanted.view->place.latitude) << n;
+        EXPECT_EQ(found.view->altitude, wanted.view->altitude) << n;
+        EXPECT_EQ(found.view->mode, wanted.view->mode) << n;
+        EXPECT_EQ(found.view->heading, wanted.view->heading) << n;
+        EXPECT_EQ(found.view->tilt, wanted.view->tilt) << n;
+        EXPECT_EQ(found.view->range, wanted.view->range) << n;
+        EXPECT_EQ(found.view->horizontalFov, wanted.view->horizontalFov) << n;
+    }
 }
 
 #if TERRAY_WITH_TRACKS && TERRAY_WITH_PROJ
@@ -56,12 +73,11 @@ Flight wildFlight() {
     Flight flight{.dataset = "d", .name = "wild & free", .keys = {}};
     double seconds = 1.5;  // rests before its first key
     for (int n = 0; n < 200; ++n) {
-        flight.keys.push_back(
-            {seconds,
-             asWritten({.position = {random.between(3e5, 7e5), random.between(5e6, 5.4e6), random.between(-50, 9000)},
-                        .heading = Radians(random.between(0, 6.28)),
-                        .pitch = Radians(random.between(-1.57, 1.57)),
-                        .verticalFov = Radians(random.between(0.02, 3)))}});
+        flight.keys.push_back({seconds, asWritten({.position = {random.between(3e5, 7e5), random.between(5e6, 5.4e6),
+                                                                random.between(-50, 9000)},
+                                                   .heading = Radians(random.between(0, 6.28)),
+                                                   .pitch = Radians(random.between(-1.57, 1.57)),
+                                                   .verticalFov = Radians(random.between(0.02, 3))})});
         seconds += random.between(0.001, 3);
     }
     return flight;
@@ -76,7 +92,6 @@ TEST_F(KmlFlight, AFlightComesBackToAMillimetreAndTenMillionthsOfADegree) {
     const double angle = radiansFromDegrees(1e-7).value();
     // The tour holds two more keys of the first pose's rest, so keys are looked for by their times.
     for (const FlightKey& key : flight.keys) {
-        const Camera camera = back.at(key.seconds);
         const auto near = std::min_element(back.keys.begin(), back.keys.end(), [&](const auto& a, const auto& b) {
             return std::abs(a.seconds - key.seconds) < std::abs(b.seconds - key.seconds);
         });
@@ -85,7 +100,6 @@ TEST_F(KmlFlight, AFlightComesBackToAMillimetreAndTenMillionthsOfADegree) {
         EXPECT_NEAR(std::remainder(near->camera.heading.value() - key.camera.heading.value(), 2 * M_PI), 0, angle);
         EXPECT_NEAR(near->camera.pitch.value(), key.camera.pitch.value(), angle);
         EXPECT_NEAR(near->camera.verticalFov.value(), key.camera.verticalFov.value(), angle);
-        (void)camera;
     }
 }
 
