@@ -21,7 +21,7 @@ inline constexpr double kKmlAspect = 16.0 / 9;
                                   const Projection* projection, GroundHeights& ground);
 
 /// Writes a flight in the format that the name's ending says: .json, .kml (a tour of smooth gx:FlyTo with absolute
-/// cameras, which importFlight gives back to 1 mm and 1e-7 degrees) or .gpx (a track, a point at each key and at least
+/// cameras, which importFlight gives back to 1 mm and 2e-6 degrees) or .gpx (a track, a point at each key and at least
 /// one a second, times from 2000-01-01T00:00:00Z). Throws Error(usage) for another ending, Error(georeference) for KML
 /// and GPX without projection or outside of it, Error(output) when it cannot be written.
 void exportFlight(const Flight& flight, const std::filesystem::path& path, const Projection* projection);

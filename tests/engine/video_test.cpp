@@ -150,13 +150,13 @@ TEST_F(VideoTest, AnEncoderThatFailsIsQuoted) {
 
 TEST_F(VideoTest, BadUseHasItsCode) {
     EXPECT_EQ(bench(command("a.avi")), ExitCode::usage);
-    for (const std::vector<std::string>& bad :
-         {std::vector<std::string>{"--size", "63x48"}, {"--fps", "0"}, {"--quality", "52"}, {"--segment", "0"}}) {
-        std::vector<std::string> all{"video", dataset(),  "--flight", (*shared_ / "tour.json").string(),
-                                     "--out", in("a.mp4")};
-        all.insert(all.end(), bad.begin(), bad.end());
-        EXPECT_EQ(bench(all), ExitCode::usage) << bad[0];
-    }
+    constexpr std::pair<const char*, const char*> kBad[] = {
+        {"--size", "63x48"}, {"--fps", "0"}, {"--quality", "52"}, {"--segment", "0"}};
+    for (const auto& [option, value] : kBad)
+        EXPECT_EQ(bench({"video", dataset(), "--flight", (*shared_ / "tour.json").string(), "--out", in("a.mp4"),
+                         option, value}),
+                  ExitCode::usage)
+            << option;
     EXPECT_FALSE(std::filesystem::exists(in("a.mp4.parts")));
 }
 
