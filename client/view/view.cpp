@@ -1,6 +1,7 @@
 #include "client/view/view.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -117,12 +118,14 @@ ExitCode drawHeadless(const ViewOptions& options) {
     return ExitCode::ok;
 }
 
-/// The arguments, those of a picture's JSON in place of --reproduce FILE.
+/// The arguments, those of a picture's JSON in place of --reproduce FILE; --size beside it counts.
 Arguments reproduced(const Arguments& arguments) {
     const auto option = std::find(arguments.begin(), arguments.end(), "--reproduce");
     if (option == arguments.end()) return arguments;
     if (std::next(option) == arguments.end()) throw Error(ExitCode::usage, "--reproduce: expected FILE.json after it");
+    static constexpr std::array<std::string_view, 1> kSize = {"size"};
     Arguments all = reproducingArguments(*std::next(option));
+    if (gives(arguments, "size")) all = withoutOptions(all, kSize);
     all.insert(all.end(), arguments.begin(), option);
     all.insert(all.end(), option + 2, arguments.end());
     return all;

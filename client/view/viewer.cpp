@@ -125,7 +125,7 @@ void Viewer::State::moveCamera(double flown) {
         replayed.reset();
         if (motion != Motion{} || navigator.moving()) navigator.step(motion, flown);
     }
-    if (recorder) recorder->add(clock, navigator.camera());
+    if (recorder) recorder->record(clock, navigator.camera());
 }
 
 bool Viewer::State::advance(const std::vector<WindowEvent>& events, double seconds, double flown) {
@@ -153,7 +153,8 @@ void Viewer::State::draw(double seconds) {
     if (navigator.camera() != drawn) barrenFrames = 0;
     drawn = navigator.camera();
     try {
-        report = engine.drawFrame(drawn, false);
+        // While a flight is recorded its pictures are those of its poses as the file will tell them.
+        report = engine.drawFrame(recorder ? asWritten(drawn) : drawn, false);
     } catch (const Error& error) {
         // The only thing that a camera's place can spoil: there, no hour of the day is known.
         if (error.code() != ExitCode::georeference || !settings.sun.byTime) throw;

@@ -201,11 +201,11 @@ void Viewer::State::takePicture() {
 void Viewer::State::startOrSaveRecording() {
     if (!recorder) {
         recorder.emplace();
-        recorder->add(clock, navigator.camera());
+        recorder->record(clock, navigator.camera());
         say("recording: R again saves the flight");
         return;
     }
-    recorder->add(clock, navigator.camera());
+    recorder->record(clock, navigator.camera());
     const std::filesystem::path path = pictureName("flight-", ".json");
     lastFlight = recorder->flight(options.datasetName, "recorded " + stamp());
     recorder.reset();

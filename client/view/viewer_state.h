@@ -3,10 +3,10 @@
 #include <array>
 
 #include "client/navigation/bookmarks.h"
-#include "client/navigation/flight_recorder.h"
 #include "client/navigation/ground_tiles.h"
 #include "client/navigation/tape.h"
 #include "client/render/screen.h"
+#include "client/stream/flight_recorder.h"
 #include "client/view/frame_history.h"
 #include "client/view/gui.h"
 #include "client/view/instruments.h"

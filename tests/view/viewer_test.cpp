@@ -132,6 +132,9 @@ TEST_F(ViewerTest, TakesAPictureThatItsJsonDrawsAgain) {
     ASSERT_EQ(runView({"--reproduce", written(".json").string(), "--out", again}), ExitCode::ok);
     EXPECT_TRUE(readPicture(again) == readPicture(written(".png")));
     EXPECT_EQ(readPicture(again).width(), 320);
+    const std::string larger = (dataset / "larger.png").string();
+    ASSERT_EQ(runView({"--reproduce", written(".json").string(), "--size", "400x300", "--out", larger}), ExitCode::ok);
+    EXPECT_EQ(readPicture(larger).width(), 400);
 }
 
 TEST_F(ViewerTest, RecordsWhatWasFlownAndReplaysIt) {
