@@ -122,7 +122,8 @@ Awaitable<bool> Connection::answer(const Head& head) {
     if (worker_.shared().tiles != nullptr && slice != nullptr && slice->tile && response.bytesToSend() > 0) {
         // A name for it: GCC 12 destroys a temporary argument of an awaited call twice.
         const StoredTile stored{slice->archive, *slice->tile, slice->range};
-        tile = co_await fetch(stored);
+        tile = worker_.shared().tiles->find(stored);
+        if (!tile) tile = co_await fetch(stored);
         if (!tile) response = refusal(500, "the tile cannot be read; the server's operator should verify the dataset");
     }
     const bool keepAlive = !response.closes && !worker_.isStopping();
@@ -149,7 +150,6 @@ void Connection::account(const Request* request, int status, std::chrono::micros
 
 Awaitable<TileBytes> Connection::fetch(const StoredTile& tile) {
     TileStore& tiles = *worker_.shared().tiles;
-    if (TileBytes kept = tiles.find(tile)) co_return kept;
     // A reader's thread brings the bytes; the coroutine goes on with them on its own.
     const auto begin = [&](auto handler) {
         const auto resume = std::make_shared<decltype(handler)>(std::move(handler));
@@ -168,7 +168,9 @@ Awaitable<void> Connection::send(const Response& response, std::string head, Til
     const auto* text = hasBody ? std::get_if<std::string>(&response.body) : nullptr;
     // A client that has to be waited for gets the rest from the file: only clients that keep up hold tiles in memory.
     const size_t atOnce = tile ? sendAtOnce(head, *tile) : 0;
+    const bool isDone = tile && atOnce == head.size() + tile->size();
     tile.reset();
+    if (isDone) co_return;
     std::array<iovec, 2> pieces = {pieceOf(std::string_view(head).substr(std::min(atOnce, head.size()))),
                                    text != nullptr ? pieceOf(*text) : iovec{}};
     co_await sendPieces(pieces, slice != nullptr);

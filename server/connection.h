@@ -36,7 +36,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Awaitable<bool> wait(Socket::wait_type type);
     /// Answers one head. @return whether another may follow
     Awaitable<bool> answer(const Head& head);
-    /// A tile's bytes through the store; waits if they have to be read. Null: they cannot be.
+    /// A tile's bytes through the store, which has to read them. Null: it cannot.
     Awaitable<TileBytes> fetch(const StoredTile& tile);
     /// Sends an answer, to its end unless `failed_`. @param tile  bytes of the body if they are in memory
     Awaitable<void> send(const Response& response, std::string head, TileBytes tile);

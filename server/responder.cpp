@@ -104,6 +104,8 @@ Found find(const RequestTarget& target, const Catalogue& catalogue, const Metric
 
 /// Fields that an answer has with and without content: a 304 repeats them (RFC 9110, 15.4.5).
 void addCommonFields(Response& response, const Resource& resource) {
+    constexpr size_t kUsualBytes = 512;  // of all fields together
+    response.fields.reserve(kUsualBytes);
     response.addField("Access-Control-Allow-Origin", "*");
     response.addField("Access-Control-Expose-Headers",
                       "Accept-Ranges, Content-Length, Content-Range, ETag, Retry-After");
