@@ -230,7 +230,7 @@ std::optional<double> GroundCaster::meetExtremeOfPatch(const Square& loaded, int
             all &= !nearU || !nearV || patch.exists[owner];
         }
         if (!(offset.sign > 0 ? any : all)) continue;
-        const bool nextInReach = std::min({u, v, 1 - u, 1 - v}) <= reach;
+        const bool nextInReach = reach > 0 && std::min({u, v, 1 - u, 1 - v}) <= reach;
         const double steep = offset.sign * relief.steepest;
         const double step = nextInReach ? offset.sign * relief.step : 0;
         const Quadratic height{ray.height.a, ray.height.b - slack.reach.b * steep,
