@@ -71,7 +71,7 @@ void sweepMethod(Sweep& sweep) {
     for (const char* numbers : {"quads=16", "quads=64", "quads=128", "quads=256,stride=1.6,steps=10,more=20",
                                 "quads=64,stride=0.4,steps=40,more=160", "exponential=1,steps=10"})
         add("hull:" + std::string(numbers));
-    for (const char* numbers : {"blocks=64", "blocks=128,reach=32", "blocks=256,reach=32", "steps=32", "steps=512"})
+    for (const char* numbers : {"blocks=64", "blocks=128,reach=32", "steps=32", "steps=512"})
         add("cones:" + std::string(numbers));
     for (const char* error : {"0.1", "0.25", "1", "2", "4"}) add("mesh:error=" + std::string(error));
 }

@@ -106,7 +106,7 @@ TEST_F(EditsTest, EditedGroundShowsNoHoleByEitherLaunch) {
         }
     }
     EXPECT_GT(all.ground, all.pixels / 4);
-    EXPECT_GT(all.jumps, 100);
+    EXPECT_GT(all.jumps, 20) << "a starved budget takes detail evenly, so few levels meet";
 }
 
 TEST_F(EditsTest, EditsAtRunTimeMakeThePicturesOfAnEngineThatBeganWithThem) {
