@@ -46,10 +46,12 @@ class Photo : public testing::Test {
     /// Colours of a view against the ramps at each hit. The light on flat ground is one factor a channel, found from
     /// the picture's own median, so that the test does not repeat the shader's constants.
     void expectRamps(const ComputedDataset& dataset, const Camera& camera, EngineOptions options,
-                     bool complete = true) {
+                     bool fits = true) {
         options.colour = ColourFormat::linearFloat;
         Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
-        EXPECT_EQ(engine.drawFrame(camera, true).wanted == 0, complete);
+        const FrameReport report = engine.drawFrame(camera, true);
+        EXPECT_EQ(report.wanted, 0u);
+        EXPECT_EQ(report.coarsening == Coarsening(), fits) << "photos finer than memory holds";
         const auto colours = engine.targets().readLinear();
         const auto hits = engine.targets().readHits();
         const auto nodes = engine.targets().readNodes();
@@ -102,7 +104,7 @@ TEST_F(Photo, MayBeCoarserThanTheHeights) {
     expectRamps(dataset, cameraAt({2300, 3900, 500}, 10, -40, 50), inspectedOptions());
 }
 
-TEST_F(Photo, StandInsLieWhereTheyBelong) {
+TEST_F(Photo, PhotosCoarsenedToFitMemoryLieWhereTheyBelong) {
     const ComputedDataset dataset(flat, kSamples, 2, ramps, 3);
     EngineOptions options = inspectedOptions();
     options.gpuImageryBytes = 2 * imageryChainBytes();  // the root and one more
