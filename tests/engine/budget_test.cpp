@@ -100,14 +100,15 @@ TEST_F(BudgetTest, NoneIsExceededOnAFlight) {
     EXPECT_LE(allocated.heights + allocated.maxima, 6 * GpuTiles::heightUploadBytes() * 3 / 2);
     EXPECT_LE(allocated.imagery, 10 * GpuTiles::imageryUploadBytes());
     uint64_t most = 0, uploaded = 0;
-    for (double along = 500; along < 7500; along += 100) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(3));
-        const FrameReport report = starved->drawFrame(low(along), false);
-        most = std::max(most, report.hostBytes);
-        uploaded += report.uploadedTiles;
-        EXPECT_LE(report.residentHeights, starved->tiles().heightSlots());
-        EXPECT_LE(report.residentImagery, starved->tiles().imagerySlots());
-    }
+    for (int flight = 0; flight < 50 && uploaded <= 10; ++flight)  // a slow machine needs more than one
+        for (double along = 500; along < 7500; along += 100) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(3));
+            const FrameReport report = starved->drawFrame(low(along), false);
+            most = std::max(most, report.hostBytes);
+            uploaded += report.uploadedTiles;
+            EXPECT_LE(report.residentHeights, starved->tiles().heightSlots());
+            EXPECT_LE(report.residentImagery, starved->tiles().imagerySlots());
+        }
     EXPECT_LE(most, kHostBytes);
     EXPECT_GT(most, kHostBytes / 2) << "it is used";
     EXPECT_GT(uploaded, 10u);
