@@ -3,6 +3,8 @@
 
 #include <dlfcn.h>
 
+#include <initializer_list>
+
 extern "C" {
 
 const char* __ubsan_default_options();
@@ -39,6 +41,9 @@ const char* __lsan_default_options() {
 const char* __lsan_default_suppressions() {
     return "leak:libEGL\n"
            "leak:libGLdispatch\n"
+           "leak:libglfw\n"
+           "leak:libX11\n"
+           "leak:libdbus\n"
            "leak:libglapi\n"
            "leak:swrast_dri\n"
            "leak:libLLVM\n"
@@ -51,7 +56,9 @@ const char* __lsan_default_suppressions() {
 // just ending, that faults ("Tracer caught signal 11"), about once in a thousand programs. Programs that drew are
 // therefore not searched for leaks; for those that did not, and for all other faults, nothing changes.
 int __lsan_is_turned_off() {
-    return dlopen("libEGL_mesa.so.0", RTLD_LAZY | RTLD_NOLOAD) != nullptr;
+    for (const char* driver : {"libEGL_mesa.so.0", "libGLX_mesa.so.0"})
+        if (dlopen(driver, RTLD_LAZY | RTLD_NOLOAD) != nullptr) return 1;
+    return 0;
 }
 
 }  // extern "C"

@@ -172,7 +172,9 @@ TEST(SoakedViewer, KeepsAboveTheGroundAndShowsItWithoutHolesErrorsOrLeaks) {
     EXPECT_EQ(messages, "") << "of the driver";
     EXPECT_GT(frames, 20);
     EXPECT_GT(probes, 10);
+#ifndef __SANITIZE_ADDRESS__  // which keeps freed memory back
     EXPECT_LT(end - halfway, 24) << "megabytes";
+#endif
 }
 
 }  // namespace
