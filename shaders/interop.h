@@ -14,34 +14,34 @@ using dvec4 = glm::dvec4;
 #endif
 
 // Bindings. Textures: GL texture units. Buffers: indexed binding points.
-#define TERRAY_UNIT_HEIGHTS 0  // usampler2DArray: codes and maximum mipmap, see GpuTiles
-#define TERRAY_UNIT_PHOTO 1    // sampler2DArray: BC1 sRGB
-#define TERRAY_UNIT_ID 2       // usampler2D: node last found in front, by the ID pass
-#define TERRAY_UNIT_HIT 3      // sampler2D: hit in the tile frame, view depth
-#define TERRAY_UNIT_NODE 4     // usampler2D: node index + 1
-#define TERRAY_UNIT_SKY 5      // sampler2D: the sky by direction, see SkyTable
-#define TERRAY_UNIT_AIR 6      // sampler3D: the air by direction and distance, see SkyTable
-#define TERRAY_UNIT_SUN_LIGHT 7  // sampler2D: part of the sun that the ground sees
-#define TERRAY_UNIT_STEPS 8    // usampler2D: steps of each pixel's ray, or of its shadow rays
-#define TERRAY_UNIT_METHOD 9   // what a method keeps of each tile (MethodTiles)
-#define TERRAY_IMAGE_STEPS 0   // uimage2D r32ui
-#define TERRAY_IMAGE_HIT 1     // image2D rgba32f, compute launch
-#define TERRAY_IMAGE_NODE 2    // uimage2D r32ui, compute launch
-#define TERRAY_IMAGE_COLOUR 3  // image2D rgba8 (sRGB bytes) or rgba16f (linear), compute launch
-#define TERRAY_IMAGE_NORMAL 4  // image2D rgba32f, compute launch
-#define TERRAY_IMAGE_SUN_LIGHT 5     // image2D r8, compute launch
-#define TERRAY_IMAGE_SHADOW_STEPS 6  // uimage2D r32ui
-#define TERRAY_BUFFER_NODES 0  // SSBO: NodeParameters[]
-#define TERRAY_BUFFER_FRAME 1  // UBO: FrameParameters
-#define TERRAY_BUFFER_BOXES 2  // SSBO: vec4[], of each node the pixels that its box covers; compute launch
-#define TERRAY_BUFFER_BINS 3   // SSBO: uint[], of each square of pixels a bit for each node; compute launch
-#define TERRAY_BUFFER_SKY 6    // SSBO: SkyParameters
+#define TERRAY_UNIT_HEIGHTS 0         // usampler2DArray: codes and maximum mipmap, see GpuTiles
+#define TERRAY_UNIT_PHOTO 1           // sampler2DArray: BC1 sRGB
+#define TERRAY_UNIT_ID 2              // usampler2D: node last found in front, by the ID pass
+#define TERRAY_UNIT_HIT 3             // sampler2D: hit in the tile frame, view depth
+#define TERRAY_UNIT_NODE 4            // usampler2D: node index + 1
+#define TERRAY_UNIT_SKY 5             // sampler2D: the sky by direction, see SkyTable
+#define TERRAY_UNIT_AIR 6             // sampler3D: the air by direction and distance, see SkyTable
+#define TERRAY_UNIT_SUN_LIGHT 7       // sampler2D: part of the sun that the ground sees
+#define TERRAY_UNIT_STEPS 8           // usampler2D: steps of each pixel's ray, or of its shadow rays
+#define TERRAY_UNIT_METHOD 9          // what a method keeps of each tile (MethodTiles)
+#define TERRAY_IMAGE_STEPS 0          // uimage2D r32ui
+#define TERRAY_IMAGE_HIT 1            // image2D rgba32f, compute launch
+#define TERRAY_IMAGE_NODE 2           // uimage2D r32ui, compute launch
+#define TERRAY_IMAGE_COLOUR 3         // image2D rgba8 (sRGB bytes) or rgba16f (linear), compute launch
+#define TERRAY_IMAGE_NORMAL 4         // image2D rgba32f, compute launch
+#define TERRAY_IMAGE_SUN_LIGHT 5      // image2D r8, compute launch
+#define TERRAY_IMAGE_SHADOW_STEPS 6   // uimage2D r32ui
+#define TERRAY_BUFFER_NODES 0         // SSBO: NodeParameters[]
+#define TERRAY_BUFFER_FRAME 1         // UBO: FrameParameters
+#define TERRAY_BUFFER_BOXES 2         // SSBO: vec4[], of each node the pixels that its box covers; compute launch
+#define TERRAY_BUFFER_BINS 3          // SSBO: uint[], of each square of pixels a bit for each node; compute launch
+#define TERRAY_BUFFER_SKY 6           // SSBO: SkyParameters
 #define TERRAY_BUFFER_SHADOW_CELLS 4  // SSBO: ShadowCell[]
 #define TERRAY_BUFFER_SHADOW 5        // UBO: ShadowParameters
 #define TERRAY_BUFFER_SHADING 7       // UBO: ShadingParameters
 #define TERRAY_BUFFER_METHOD 8        // UBO: MethodParameters
-#define TERRAY_UNIFORM_NODE 0  // location of the node index (raster), of the number of nodes (compute)
-#define TERRAY_UNIFORM_GEOMETRY 1  // locations of methods that rasterise geometry (GeometryPass)
+#define TERRAY_UNIFORM_NODE 0         // location of the node index (raster), of the number of nodes (compute)
+#define TERRAY_UNIFORM_GEOMETRY 1     // locations of methods that rasterise geometry (GeometryPass)
 #define TERRAY_UNIFORM_INSIDE 2
 #define TERRAY_UNIFORM_SLACK 2
 #define TERRAY_UNIFORM_HOLED 1
@@ -53,9 +53,9 @@ using dvec4 = glm::dvec4;
 #define TERRAY_GROUP_SIDE 8
 #define TERRAY_BIN_SIDE 32
 
-// NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear. For shading
-// modes: whether ancestors stand in for tiles that are not resident, and level and hash of the height source; the two lowest
-// bits of the hash are the tile's quadrant, so that neighbours differ.
+// NodeParameters::source.w: the pyramid level to start at in the low bits, and whether the surface is bilinear. For
+// shading modes: whether ancestors stand in for tiles that are not resident, and level and hash of the height source;
+// the two lowest bits of the hash are the tile's quadrant, so that neighbours differ.
 #define TERRAY_START_LEVEL_MASK 0xffu
 #define TERRAY_BILINEAR_BIT 0x100u
 #define TERRAY_HEIGHT_STAND_IN_BIT 0x200u
@@ -73,10 +73,10 @@ using dvec4 = glm::dvec4;
 #define TERRAY_SKY_TOP_LIGHT 9000.0
 
 // Within the program that edits tiles (TileEditor).
-#define TERRAY_IMAGE_EDITED_CODES 0   // uimage2DArray r16ui: level 0 of the height array
-#define TERRAY_BUFFER_EDITED_TILE 0   // UBO: EditedTileParameters
-#define TERRAY_BUFFER_EDITS 0         // SSBO: EditParameters[]
-#define TERRAY_BUFFER_EDIT_SEGMENTS 1 // SSBO: dvec4[], of each segment of a line its two ends
+#define TERRAY_IMAGE_EDITED_CODES 0    // uimage2DArray r16ui: level 0 of the height array
+#define TERRAY_BUFFER_EDITED_TILE 0    // UBO: EditedTileParameters
+#define TERRAY_BUFFER_EDITS 0          // SSBO: EditParameters[]
+#define TERRAY_BUFFER_EDIT_SEGMENTS 1  // SSBO: dvec4[], of each segment of a line its two ends
 #define TERRAY_EDIT_CRATER 0
 #define TERRAY_EDIT_RAISE 1
 #define TERRAY_EDIT_LEVEL 2
@@ -143,15 +143,16 @@ struct ShadowParameters {
 
 // What shading modes measure by.
 struct ShadingParameters {
-    vec4 heights;  // x: lowest, y: highest of the dataset, z: between contour lines, metres; w: tolerance of errors, pixels
+    vec4 heights;  // x: lowest, y: highest of the dataset, z: between contour lines, metres; w: tolerance of errors,
+                   // pixels
 };
 
 // What methods other than the pyramid's search by (MethodOptions); each reads its own.
 struct MethodParameters {
-    vec4 linear;  // x: least, y: most samples of a ray's way through a box; z: halvings
-    vec4 hull;    // x: steps, y: more and longer steps; z: stride, in tiles, < 0: exponential; w: secant steps
+    vec4 linear;    // x: least, y: most samples of a ray's way through a box; z: halvings
+    vec4 hull;      // x: steps, y: more and longer steps; z: stride, in tiles, < 0: exponential; w: secant steps
     vec4 hullMore;  // x: length of the longer steps, in strides
-    vec4 cones;   // x: steps, y: reach in blocks, z: halvings
+    vec4 cones;     // x: steps, y: reach in blocks, z: halvings
 };
 
 // In double, so that a sample's height depends on its place in the dataset and not on the tile that holds it.

@@ -39,8 +39,10 @@ ExitCode runBench(const std::vector<std::string>& arguments) {
     if (command == "stability") return runStability(rest);
     if (command == "image-error") return runImageError(rest);
     const std::string found = command.empty() ? "found no command" : "found the command \"" + command + "\"";
-    throw Error(ExitCode::usage, found + ", expected tour, convert, replay, video, error, compare, stability or image-error "
-                                         "(--help tells more)");
+    throw Error(ExitCode::usage,
+                found +
+                    ", expected tour, convert, replay, video, error, compare, stability or image-error "
+                    "(--help tells more)");
 }
 
 }  // namespace terray

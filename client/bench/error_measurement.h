@@ -31,16 +31,16 @@ struct ErrorResult {
     /// picture, less the same of the finest level. Over pairs; detail that pops in makes it greater, missing detail
     /// less.
     Spread popping;
-    uint64_t nodes = 0;        ///< of all frames
-    uint64_t lacking = 0;      ///< tiles that a frame wanted and memory did not hold, over all frames
-    uint64_t gpuBytes = 0;      ///< allocated for tiles, at the end
-    uint64_t pyramidBytes = 0;  ///< of these, maximum mipmaps
-    uint64_t methodBytes = 0;   ///< of these, what the method keeps beside heights and pyramids
+    uint64_t nodes = 0;             ///< of all frames
+    uint64_t lacking = 0;           ///< tiles that a frame wanted and memory did not hold, over all frames
+    uint64_t gpuBytes = 0;          ///< allocated for tiles, at the end
+    uint64_t pyramidBytes = 0;      ///< of these, maximum mipmaps
+    uint64_t methodBytes = 0;       ///< of these, what the method keeps beside heights and pyramids
     double triangles = 0;           ///< drawn in a frame by methods that rasterise, mean
     double trianglesPerSecond = 0;  ///< of the timed frames, over their whole time
     double bytesPerTriangle = 0;    ///< that the method keeps; 0: of methods without a mesh of each tile's own
-    double pyramidMs = 0;      ///< to make a height tile's maximum mipmap, mean
-    double prepareMs = 0;      ///< to make what the method keeps of a tile, mean
+    double pyramidMs = 0;           ///< to make a height tile's maximum mipmap, mean
+    double prepareMs = 0;           ///< to make what the method keeps of a tile, mean
 };
 
 /// The errors of a frame's pixels, for maps; all of its pixels.

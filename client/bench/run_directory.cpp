@@ -40,7 +40,8 @@ void removeFolder(const fs::path& folder, std::string_view prefix) {
 
 RunDirectory::RunDirectory(fs::path path, bool withFrames, bool force) : path_(std::move(path)), existed_(false) {
     std::error_code ignored;  // what cannot be looked at is found out by create()
-    for (const fs::path& file : {table(), steps(), errors(), split(), stability(), summary(), manifest(), frames(), path_ / kMaps})
+    for (const fs::path& file :
+         {table(), steps(), errors(), split(), stability(), summary(), manifest(), frames(), path_ / kMaps})
         if (!force && fs::exists(file, ignored))
             throw Error(ExitCode::output, path_.string() + " holds an earlier run, found " + file.string() +
                                               " (give --force to replace it)");
@@ -59,7 +60,8 @@ RunDirectory::~RunDirectory() {
 
 void RunDirectory::removeRun() const {
     std::error_code failure;
-    for (const fs::path& file : {table(), steps(), errors(), split(), stability(), summary(), manifest()}) fs::remove(file, failure);
+    for (const fs::path& file : {table(), steps(), errors(), split(), stability(), summary(), manifest()})
+        fs::remove(file, failure);
     removeFolder(frames(), "frame_");
     removeFolder(path_ / kMaps, "map_");
 }

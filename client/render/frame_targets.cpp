@@ -142,7 +142,8 @@ Grid<uint32_t> FrameTargets::readNodes() const {
 
 glm::vec4 FrameTargets::readHit(int column, int row) const {
     glm::vec4 texel(0);
-    glGetTextureSubImage(hit.name(), 0, column, height_ - 1 - row, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof(texel), &texel);
+    glGetTextureSubImage(hit.name(), 0, column, height_ - 1 - row, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof(texel),
+                         &texel);
     return texel;
 }
 

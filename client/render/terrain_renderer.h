@@ -55,7 +55,7 @@ struct RenderOptions {
     Launch launch = Launch::raster;  ///< methods that rasterise geometry are drawn by the raster launch alone
     bool occlusion = true;           ///< raster launch: the tile-ID pass (paper 001, section 3.4)
     Surface surface = Surface::automatic;
-    MethodOptions method;  ///< that of GpuTilesOptions, where the method keeps something of each tile
+    MethodOptions method;                ///< that of GpuTilesOptions, where the method keeps something of each tile
     std::optional<DrawCosts> drawCosts;  ///< Method::hybrid needs them, see draw_calibration.h
     /// The sky of the sun's elevation, and its light on the ground; off: a gradient, and light as under a sun at 40
     /// degrees. Heights count from the sea (z = 0).

@@ -42,9 +42,10 @@ namespace terray {
 // criteria of detail as what is seen: a shadow's edge fits what it falls on. Their tiles are asked for at half urgency.
 
 struct SelectionOptions {
-    Pixels tolerance{2.0 / 3.0};   ///< of the projected geometric error (paper 001, section 4)
-    /// Heights by distance alone, in place of the tolerance (paper 000, section 3.5, tile by tile): the finest as far as
-    /// so many of their samples from the eye, in three dimensions, and half as fine over each doubling of the distance.
+    Pixels tolerance{2.0 / 3.0};  ///< of the projected geometric error (paper 001, section 4)
+    /// Heights by distance alone, in place of the tolerance (paper 000, section 3.5, tile by tile): the finest as far
+    /// as so many of their samples from the eye, in three dimensions, and half as fine over each doubling of the
+    /// distance.
     std::optional<double> lodDistance;
     Pixels imageryTolerance{1.0};  ///< of the projected side of a photo texel
     bool useImagery = true;

@@ -45,8 +45,7 @@ class Photo : public testing::Test {
 
     /// Colours of a view against the ramps at each hit. The light on flat ground is one factor a channel, found from
     /// the picture's own median, so that the test does not repeat the shader's constants.
-    void expectRamps(const ComputedDataset& dataset, const Camera& camera, EngineOptions options,
-                     bool fits = true) {
+    void expectRamps(const ComputedDataset& dataset, const Camera& camera, EngineOptions options, bool fits = true) {
         options.colour = ColourFormat::linearFloat;
         Engine engine(dataset.source(), shaders_, options, kWidth, kHeight);
         const FrameReport report = engine.drawFrame(camera, true);
