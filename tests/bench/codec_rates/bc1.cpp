@@ -8,7 +8,6 @@
 #include <cstring>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include <gdal_priv.h>
 
@@ -80,38 +79,27 @@ void measure(const std::string& photoName, const Grid<Rgba>& photo, const std::s
     std::fflush(stdout);
 }
 
-int run(const std::vector<std::string>& arguments) {
-    GDALAllRegister();
-    std::printf("| photo | encoder | PSNR, dB | MPixel/s |\n|---|---|---|---|\n");
-    for (const std::string& argument : arguments) {
-        const size_t equals = argument.find('=');
-        if (equals == std::string::npos) throw Error(ExitCode::usage, "expected NAME=FILE, found \"" + argument + "\"");
-        const std::string name = argument.substr(0, equals);
-        const Grid<Rgba> photo = readPhoto(argument.substr(equals + 1));
-        measure(name, photo, "stb_dxt, normal",
-                [](auto* block, const auto* texels) { stb_compress_dxt_block(block, texels, 0, STB_DXT_NORMAL); });
-        measure(name, photo, "**stb_dxt, high quality**",
-                [](auto* block, const auto* texels) { stb_compress_dxt_block(block, texels, 0, STB_DXT_HIGHQUAL); });
+void measurePhoto(const std::string& name, const std::string& file) {
+    const Grid<Rgba> photo = readPhoto(file);
+    measure(name, photo, "stb_dxt, normal",
+            [](auto* block, const auto* texels) { stb_compress_dxt_block(block, texels, 0, STB_DXT_NORMAL); });
+    measure(name, photo, "**stb_dxt, high quality**",
+            [](auto* block, const auto* texels) { stb_compress_dxt_block(block, texels, 0, STB_DXT_HIGHQUAL); });
 #if TERRAY_HAS_SQUISH
-        measure(name, photo, "squish, range fit", [](auto* block, const auto* texels) {
-            squish::Compress(texels, block, squish::kDxt1 | squish::kColourRangeFit);
-        });
-        measure(name, photo, "squish, cluster fit", [](auto* block, const auto* texels) {
-            squish::Compress(texels, block, squish::kDxt1 | squish::kColourClusterFit);
-        });
+    measure(name, photo, "squish, range fit", [](auto* block, const auto* texels) {
+        squish::Compress(texels, block, squish::kDxt1 | squish::kColourRangeFit);
+    });
+    measure(name, photo, "squish, cluster fit", [](auto* block, const auto* texels) {
+        squish::Compress(texels, block, squish::kDxt1 | squish::kColourClusterFit);
+    });
 #endif
-    }
-    return 0;
 }
 
 }  // namespace
 }  // namespace terray::bench
 
 int main(int count, char** arguments) {
-    try {
-        return terray::bench::run({arguments + 1, arguments + count});
-    } catch (const terray::Error& error) {
-        std::fprintf(stderr, "bc1_rates: %s\n", error.what());
-        return static_cast<int>(error.code());
-    }
+    GDALAllRegister();
+    std::printf("| photo | encoder | PSNR, dB | MPixel/s |\n|---|---|---|---|\n");
+    return terray::bench::measureFiles("bc1_rates", count, arguments, terray::bench::measurePhoto);
 }

@@ -175,26 +175,15 @@ void measure(const std::string& name, Grid<float> heights) {
     measureGdal(terrain, "GDAL LERC_ZSTD 1, 5 mm", {"COMPRESS=LERC_ZSTD", "ZSTD_LEVEL=1", "MAX_Z_ERROR=0.005"});
 }
 
-int run(const std::vector<std::string>& arguments) {
-    GDALAllRegister();
-    std::printf("| heights | codec | bytes a sample | encode, MB/s | decode, MB/s |\n|---|---|---|---|---|\n");
-    for (const std::string& argument : arguments) {
-        const size_t equals = argument.find('=');
-        if (equals == std::string::npos) throw Error(ExitCode::usage, "expected NAME=FILE, found \"" + argument + "\"");
-        measure(argument.substr(0, equals), readFile(argument.substr(equals + 1)));
-    }
-    measure("noise, 0 to 100 m", noise());
-    return 0;
-}
-
 }  // namespace
 }  // namespace terray::bench
 
 int main(int count, char** arguments) {
-    try {
-        return terray::bench::run({arguments + 1, arguments + count});
-    } catch (const terray::Error& error) {
-        std::fprintf(stderr, "height_codec_rates: %s\n", error.what());
-        return static_cast<int>(error.code());
-    }
+    using namespace terray::bench;
+    GDALAllRegister();
+    std::printf("| heights | codec | bytes a sample | encode, MB/s | decode, MB/s |\n|---|---|---|---|---|\n");
+    const int code = measureFiles("height_codec_rates", count, arguments,
+                                  [](const auto& name, const auto& file) { measure(name, readFile(file)); });
+    if (code == 0) measure("noise, 0 to 100 m", noise());
+    return code;
 }

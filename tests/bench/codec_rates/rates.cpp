@@ -1,8 +1,11 @@
 #include "tests/bench/codec_rates/rates.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
 #include <limits>
+
+#include "common/error.h"
 
 namespace terray::bench {
 namespace {
@@ -27,6 +30,23 @@ double leastSeconds(const std::function<void()>& work) {
         spent += seconds;
     }
     return least;
+}
+
+int measureFiles(const std::string& program, int count, char** arguments,
+                 const std::function<void(const std::string& name, const std::string& file)>& measure) {
+    try {
+        for (int n = 1; n < count; ++n) {
+            const std::string argument = arguments[n];
+            const size_t equals = argument.find('=');
+            if (equals == std::string::npos)
+                throw Error(ExitCode::usage, "expected NAME=FILE, found \"" + argument + "\"");
+            measure(argument.substr(0, equals), argument.substr(equals + 1));
+        }
+    } catch (const Error& error) {
+        std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+        return static_cast<int>(error.code());
+    }
+    return 0;
 }
 
 }  // namespace terray::bench
