@@ -37,16 +37,17 @@ class FirstFailure {
 
 }  // namespace
 
-void forEachParallel(size_t count, int jobs, const std::atomic<bool>& stop,
+void forEachParallel(const std::function<std::optional<size_t>()>& next, int jobs, const std::atomic<bool>& stop,
                      const std::function<void(int worker, size_t item)>& work) {
     TERRAY_CHECK_OP(jobs, >=, 1);
-    std::atomic<size_t> next = 0;
     FirstFailure failure;
     const auto run = [&](int worker) {
         while (!stop && !failure.any()) {
-            const size_t item = next++;
-            if (item >= count) return;
+            size_t item = 0;  // no item yet: a failure to get one is reported before those of the items
             try {
+                const std::optional<size_t> given = next();
+                if (!given) return;
+                item = *given;
                 work(worker, item);
             } catch (...) {
                 failure.record(item);
@@ -57,12 +58,23 @@ void forEachParallel(size_t count, int jobs, const std::atomic<bool>& stop,
     // The caller is worker 0, so that one job needs no thread at all.
     {
         std::vector<std::jthread> threads;
-        const auto useful = static_cast<int>(std::min<size_t>(static_cast<size_t>(jobs), std::max<size_t>(count, 1)));
-        for (int worker = 1; worker < useful; ++worker) threads.emplace_back(run, worker);
+        for (int worker = 1; worker < jobs; ++worker) threads.emplace_back(run, worker);
         run(0);
     }
     throwIfStopped(stop);
     failure.rethrow();
+}
+
+void forEachParallel(size_t count, int jobs, const std::atomic<bool>& stop,
+                     const std::function<void(int worker, size_t item)>& work) {
+    TERRAY_CHECK_OP(jobs, >=, 1);
+    std::atomic<size_t> given = 0;
+    const auto next = [&]() -> std::optional<size_t> {
+        const size_t item = given++;
+        return item < count ? std::optional(item) : std::nullopt;
+    };
+    const auto useful = std::min<size_t>(static_cast<size_t>(jobs), std::max<size_t>(count, 1));
+    forEachParallel(next, static_cast<int>(useful), stop, work);
 }
 
 void throwIfStopped(const std::atomic<bool>& stop) {

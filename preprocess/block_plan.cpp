@@ -128,14 +128,15 @@ uint64_t blockBudget(uint64_t memoryBytes) {
 
 }  // namespace
 
-WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights, const PyramidExtent* imagery) {
+WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights, const PyramidExtent* imagery,
+                  int processes) {
     const uint64_t budget = blockBudget(memoryBytes);
-    const uint32_t wanted = busyDepth(heights, jobs);
+    const uint32_t wanted = busyDepth(heights, jobs * processes);
     const uint32_t heightDepth = fittingDepth(wanted, jobs, budget, heightBlockBytes);
     bool smaller = heightDepth < wanted;
     std::optional<uint32_t> imageryDepth;
     if (imagery != nullptr) {
-        const uint32_t wantedImagery = busyDepth(*imagery, jobs);
+        const uint32_t wantedImagery = busyDepth(*imagery, jobs * processes);
         imageryDepth = fittingDepth(wantedImagery, jobs, budget, imageryBlockBytes);
         smaller = smaller || *imageryDepth < wantedImagery;
     }

@@ -73,10 +73,11 @@ inline constexpr uint64_t kMinMemoryBytes = 256u << 20;
 /// Chooses the largest blocks, up to three levels deep, of which `jobs` fit `memoryBytes` and that still keep every
 /// thread busy; then, if even the smallest blocks are too many, fewer jobs.
 ///
-/// @param imagery  nullptr without imagery
+/// @param imagery    nullptr without imagery
+/// @param processes  that build it together, each with `jobs` threads and `memoryBytes`
 /// Throws Error(usage) below kMinMemoryBytes.
 [[nodiscard]] WorkPlan planWork(int jobs, uint64_t memoryBytes, const PyramidExtent& heights,
-                                const PyramidExtent* imagery);
+                                const PyramidExtent* imagery, int processes = 1);
 /// As planWork, for a build whose blocks were chosen by an earlier run: only the jobs are.
 [[nodiscard]] WorkPlan planResumedWork(int jobs, uint64_t memoryBytes, uint32_t heightDepth,
                                        std::optional<uint32_t> imageryDepth);

@@ -43,6 +43,7 @@ struct BuildOptions {
     NodataPolicy nodataPolicy = NodataPolicy::holes;
     SharedOptions shared;
 
+    explicit BuildOptions(Ranks* ranks) : shared(ranks) {}
     void declare(CommandLine& line) {
         line.positionals("DEM", heights.files,
                          "heights: georeferenced rasters, or one plain image; @LIST names a file with one name a line")
@@ -109,8 +110,8 @@ std::unique_ptr<HeightSource> openHeights(const HeightSourceOptions& options) {
 
 }  // namespace
 
-ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<bool>& stop) {
-    BuildOptions options;
+ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<bool>& stop, Ranks* ranks) {
+    BuildOptions options(ranks);
     CommandLine line("terray-preprocess build", "Builds a dataset from height rasters and, if given, photos.");
     options.declare(line);
     if (!line.parse(arguments)) return ExitCode::ok;
@@ -134,12 +135,12 @@ ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<b
     return ExitCode::ok;
 }
 
-ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<bool>& stop) {
+ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<bool>& stop, Ranks* ranks) {
     int64_t size = 0;
     double spacing = 1;
     int64_t seed = 1;
     bool imagery = false;
-    SharedOptions shared;
+    SharedOptions shared(ranks);
     CommandLine line("terray-preprocess synth", "Builds a dataset of procedural terrain, the same for the same seed.");
     line.option("--size", size, "N", "samples along each side").required();
     line.option("--spacing", spacing, "METRES", "between samples; default: 1");

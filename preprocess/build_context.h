@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 
+#include "preprocess/block_team.h"
 #include "preprocess/build_journal.h"
 #include "preprocess/build_observer.h"
 
@@ -18,7 +19,8 @@ struct BuildContext {
     const std::atomic<bool>& stop;  ///< set: end with Error(interrupted) soon
     BuildObserver& observer;
     BuildTimes& times;
-    BuildJournal& journal;
+    BuildJournal& journal;  ///< the leader's, or one that follows it
+    BlockTeam& team;
     std::function<void()> firstTileDone;  ///< called when there is something that is worth keeping
     std::mutex mutex = {};                ///< held while a block's record is taken and the observer told
     uint64_t tiles = 0;                   ///< of the whole build so far, as are bytes; under mutex

@@ -31,11 +31,20 @@ std::optional<Bytes> readEntry(const WorkFile& file, uint64_t fileBytes, uint64_
 
 }  // namespace
 
-BuildJournal::BuildJournal(const std::filesystem::path& path) : file_(path) {
+BuildJournal::BuildJournal(const std::filesystem::path& path, Access access) : file_(path) {
+    findEnd();
+    if (access == Access::write && end_ < file_.size()) file_.truncate(end_);
+    reserved_ = end_;
+}
+
+void BuildJournal::refresh() {
+    file_.reopen();
+    findEnd();
+}
+
+void BuildJournal::findEnd() {
     const uint64_t bytes = file_.size();
     while (const std::optional<Bytes> content = readEntry(file_, bytes, end_)) end_ += kFrameBytes + content->size();
-    if (end_ < bytes) file_.truncate(end_);
-    reserved_ = end_;
 }
 
 void BuildJournal::forEach(const std::function<void(uint64_t, ByteView)>& visit) const {

@@ -23,8 +23,11 @@ namespace terray {
 /// Entry: uint32 size, uint32 CRC-32C of the content, content (never empty). Throws Error(output) as WorkFile does.
 class BuildJournal {
   public:
-    /// Opens the journal at `path`, or creates it empty; cuts off a last entry that is not whole.
-    explicit BuildJournal(const std::filesystem::path& path);
+    enum class Access {
+        write,  ///< creates it empty where it is not there; cuts off a last entry that is not whole
+        follow  ///< reads what another process, perhaps on another machine, writes
+    };
+    explicit BuildJournal(const std::filesystem::path& path, Access access = Access::write);
 
     [[nodiscard]] bool empty() const { return end_ == 0; }
     /// Calls visit(place, content) for every entry in order, the heading (place 0) first.
@@ -41,8 +44,11 @@ class BuildJournal {
     uint64_t commit(ByteView content, std::span<WorkFile* const> data);
     /// Forces all entries so far to the disk.
     void sync() { file_.sync(); }
+    /// Access::follow: sees the entries that the other process has synced by now.
+    void refresh();
 
   private:
+    void findEnd();
     void writeBatch(std::unique_lock<std::mutex>& lock);
 
     WorkFile file_;

@@ -45,10 +45,15 @@ void printEstimate(const BuildEstimate& estimate, const SharedOptions& shared) {
 
 }  // namespace
 
+SharedOptions::SharedOptions(Ranks* others) : ranks(others) {
+    if (ranks != nullptr) jobs = std::max<int64_t>(jobs / ranks->onThisMachine(), 1);
+}
+
 void SharedOptions::declare(CommandLine& line) {
     line.option("--out", out, "DIR", "the dataset's directory, made by this run").required();
-    line.option("--jobs", jobs, "N", "threads; default: one for each core");
-    line.bytes("--memory", memoryBytes, "memory to stay within, whatever the size of the sources; default: 1G");
+    line.option("--jobs", jobs, "N", "threads of each process; default: one for each core");
+    line.bytes("--memory", memoryBytes,
+               "memory for each process to stay within, whatever the size of the sources; default: 1G");
     line.option("--max-height-error", maxHeightError, "METRES",
                 "that no height may be off by; default: half a step of codes, of 1 cm (1 mm for lidar) or as wide as a "
                 "tile's range needs");
@@ -72,7 +77,7 @@ void SharedOptions::check() const {
     if (memoryBytes < kMinMemoryBytes)
         throw Error(ExitCode::usage, "--memory is " + std::to_string(memoryBytes) + " bytes; at least " +
                                          std::to_string(kMinMemoryBytes >> 20) + " MiB are needed (--memory 256M)");
-    OutputDirectory::check(out, {.replace = force, .resume = resume});
+    if (leads()) OutputDirectory::check(out, {.replace = force, .resume = resume});
 }
 
 void SharedOptions::describe(OptionsText& text) const {
@@ -80,7 +85,7 @@ void SharedOptions::describe(OptionsText& text) const {
 }
 
 ProgressStyle SharedOptions::style() const {
-    if (quiet) return ProgressStyle::silent;
+    if (quiet || !leads()) return ProgressStyle::silent;
     return jsonProgress ? ProgressStyle::json : ProgressStyle::automatic;
 }
 
@@ -94,7 +99,8 @@ BuildRequest SharedOptions::request(const std::string& optionsText, const std::a
             .optionsText = optionsText,
             .maxHeightError = maxHeightError,
             .stop = &stop,
-            .observer = &observer};
+            .observer = &observer,
+            .ranks = ranks};
 }
 
 void OptionsText::add(const std::string& name, double value) {
@@ -122,6 +128,7 @@ void buildOrEstimate(const HeightSource& heights, const OpenPhoto& openPhoto, co
         printSummary(buildWithDisplay(heights, openPhoto, request), shared.style());
         return;
     }
+    if (!shared.leads()) return;
     const BuildEstimate estimate = estimateDataset(heights, openPhoto, request);
     printEstimate(estimate, shared);
     requireSpace(estimate, shared.out);

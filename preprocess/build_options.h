@@ -31,6 +31,7 @@ class OptionsText {
 /// Options that they share.
 struct SharedOptions {
     std::string out;
+    Ranks* ranks = nullptr;  ///< BuildRequest::ranks
     int64_t jobs = machineJobs();
     uint64_t memoryBytes = uint64_t{1} << 30;
     std::optional<double> maxHeightError;  ///< metres
@@ -40,9 +41,13 @@ struct SharedOptions {
     bool quiet = false;
     bool jsonProgress = false;
 
+    /// @param others  that run the same command; nullptr: there are none
+    explicit SharedOptions(Ranks* others = nullptr);
     void declare(CommandLine& line);
     /// Refuses what can be refused before any work.
     void check() const;
+    /// Whether this process is the one that makes the output and says what happens.
+    [[nodiscard]] bool leads() const { return ranks == nullptr || ranks->rank() == 0; }
     /// Those that show in the dataset, as text for its metadata.
     void describe(OptionsText& text) const;
     [[nodiscard]] ProgressStyle style() const;

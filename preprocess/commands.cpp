@@ -1,10 +1,13 @@
 #include "preprocess/commands.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
 #include "common/version.h"
+#include "preprocess/block_team.h"
 
 namespace terray {
 namespace {
@@ -31,15 +34,33 @@ ExitCode printVersion() {
     return ExitCode::ok;
 }
 
+/// How long a process that cannot go on waits to be ended by the one that leads, once that has told the user why.
+constexpr std::chrono::seconds kPatience(30);
+
+using SharedCommand = ExitCode (*)(const std::vector<std::string>&, const std::atomic<bool>&, Ranks*);
+
+/// Runs a command that several processes can share, with those that were started with this one.
+ExitCode runShared(SharedCommand command, const std::vector<std::string>& arguments, const std::atomic<bool>& stop) {
+    if (!isOneOfSeveral()) return command(arguments, stop, nullptr);
+    const std::unique_ptr<Ranks> ranks = joinRanks();
+    if (ranks->count() == 1) return command(arguments, stop, nullptr);
+    try {
+        return command(arguments, stop, ranks.get());
+    } catch (const std::exception& error) {
+        if (ranks->rank() != 0) TeamMember::giveUp(*ranks, error, kPatience);
+        throw;
+    }
+}
+
 }  // namespace
 
 ExitCode runPreprocess(const std::vector<std::string>& arguments, const std::atomic<bool>& stop) {
     if (arguments.empty()) throw Error(ExitCode::usage, std::string("no command given\n") + kHelp);
     const std::string& command = arguments.front();
     const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
-    if (command == "build") return runBuild(rest, stop);
-    if (command == "synth") return runSynth(rest, stop);
-    if (command == "extract") return runExtract(rest, stop);
+    if (command == "build") return runShared(runBuild, rest, stop);
+    if (command == "synth") return runShared(runSynth, rest, stop);
+    if (command == "extract") return runShared(runExtract, rest, stop);
     if (command == "info") return runInfo(rest);
     if (command == "verify") return runVerify(rest, stop);
     if (command == "--version") return printVersion();

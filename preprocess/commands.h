@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "preprocess/ranks.h"
 
 namespace terray {
 
@@ -13,10 +14,12 @@ namespace terray {
 /// Throws Error, which is for main to print.
 [[nodiscard]] ExitCode runPreprocess(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
 
-// The sub-commands, with the arguments after their names.
-[[nodiscard]] ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
-[[nodiscard]] ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
-[[nodiscard]] ExitCode runExtract(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
+// The sub-commands, with the arguments after their names. `ranks`: the processes that were started to run the same one
+// together; nullptr: none.
+[[nodiscard]] ExitCode runBuild(const std::vector<std::string>& arguments, const std::atomic<bool>& stop, Ranks* ranks);
+[[nodiscard]] ExitCode runSynth(const std::vector<std::string>& arguments, const std::atomic<bool>& stop, Ranks* ranks);
+[[nodiscard]] ExitCode runExtract(const std::vector<std::string>& arguments, const std::atomic<bool>& stop,
+                                  Ranks* ranks);
 [[nodiscard]] ExitCode runInfo(const std::vector<std::string>& arguments);
 [[nodiscard]] ExitCode runVerify(const std::vector<std::string>& arguments, const std::atomic<bool>& stop);
 

@@ -6,117 +6,21 @@
 
 #include "common/error.h"
 #include "common/parallel.h"
-#include "common/version.h"
-#include "preprocess/bc1.h"
+#include "preprocess/block_team.h"
 #include "preprocess/build_context.h"
-#include "preprocess/build_estimate.h"
 #include "preprocess/build_heading.h"
 #include "preprocess/build_journal.h"
+#include "preprocess/build_preparation.h"
 #include "preprocess/dataset_archives.h"
 #include "preprocess/height_pyramid.h"
 #include "preprocess/imagery_pyramid.h"
 #include "preprocess/output_directory.h"
-#include "preprocess/raster_layout.h"
 
 namespace terray {
 namespace {
 
-/// Deepest finest level that a build takes on: 2^29 samples along a side, the earth at 7 cm.
-constexpr uint32_t kMaxFinestLevel = 20;
-
-void requireUsable(const HeightGridInfo& info) {
-    if (info.size.width < 1 || info.size.height < 1)
-        throw Error(ExitCode::input, "the source is empty: " + std::to_string(info.size.width) + " x " +
-                                         std::to_string(info.size.height) + " samples");
-    if (!(info.spacing > 0) || !std::isfinite(info.spacing))
-        throw Error(ExitCode::input,
-                    "the source's spacing is " + std::to_string(info.spacing) + " m; it must be above 0");
-    if (Tiling::levelFor(std::max(info.size.width, info.size.height)) > kMaxFinestLevel)
-        throw Error(ExitCode::input, "the source has " + std::to_string(info.size.width) + " x " +
-                                         std::to_string(info.size.height) +
-                                         " samples; at most 2^29 along a side are "
-                                         "supported");
-}
-
-/// Compresses one block, so that a build without encoder fails now and not after hours of work on the heights.
-void requireBc1Encoder() {
-    (void)encodeBc1(Grid<Rgba>({4, 4}).view());
-}
-
-DatasetMetadata describe(const HeightGridInfo& info, const Tiling& tiling, const BuildRequest& request) {
-    DatasetMetadata metadata;
-    metadata.tiling = tiling;
-    metadata.samples = info.size;
-    metadata.crsWkt = info.crsWkt;
-    metadata.crsName = info.crsName;
-    metadata.lonLatBounds = info.lonLatBounds;
-    metadata.verticalDatum = info.verticalDatum;
-    metadata.quantum =
-        request.quantum.value_or(request.maxHeightError ? 2 * *request.maxHeightError : chooseQuantum(info));
-    metadata.tool = "terray-preprocess " + std::string(buildInfo().version);
-    metadata.options = request.optionsText;
-    metadata.nodataPolicy = request.nodataPolicy;
-    metadata.sources = info.files;
-    return metadata;
-}
-
 /// A build of at least this many tiles takes minutes, so that a second spent on whether its disk will do is well spent.
 constexpr uint64_t kManyTiles = 4096;
-
-/// What is known before any block is made.
-struct Preparation {
-    DatasetMetadata metadata;  ///< without what only the build itself finds out
-    std::unique_ptr<ColourSource> photo;
-
-    Preparation(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
-        const HeightGridInfo& info = heights.info();
-        requireUsable(info);
-        const Tiling tiling{.west = info.west,
-                            .north = info.north,
-                            .finestSpacing = info.spacing,
-                            .finestLevel = heightExtent(info).finestLevel};
-        metadata = describe(info, tiling, request);
-        if (!openPhoto) return;
-        requireBc1Encoder();
-        photo = openPhoto(tiling, info);
-        requireOverlap();
-        metadata.imageryLevel = photo->level();
-        metadata.imageryBounds = overlapOf(photo->bounds(), metadata.groundBounds());
-        metadata.sources.insert(metadata.sources.end(), photo->files().begin(), photo->files().end());
-    }
-
-    [[nodiscard]] std::optional<PyramidExtent> imagery() const {
-        if (!photo) return {};
-        return imageryExtent(metadata.tiling, metadata.samples, *photo);
-    }
-
-    [[nodiscard]] WorkPlan plan(const HeightSource& heights, const BuildRequest& request) const {
-        const std::optional<PyramidExtent> extent = imagery();
-        WorkPlan work =
-            planWork(request.jobs, request.memoryBytes, heightExtent(heights.info()), extent ? &*extent : nullptr);
-        work.heightDepth = request.blockDepth.value_or(work.heightDepth);
-        work.imageryDepth = request.blockDepth.value_or(work.imageryDepth);
-        return work;
-    }
-
-    [[nodiscard]] EstimateInput estimateInput(const HeightSource& heights, const WorkPlan& work,
-                                              uint64_t memoryBytes) const {
-        return {.heights = heights,
-                .photo = photo.get(),
-                .tiling = metadata.tiling,
-                .quantum = metadata.quantum,
-                .work = work,
-                .memoryBytes = memoryBytes};
-    }
-
-  private:
-    void requireOverlap() const {
-        if (!overlapOf(photo->bounds(), metadata.groundBounds()))
-            throw Error(ExitCode::georeference, "heights and imagery do not overlap");
-        if (photo->level() > kMaxTileLevel)
-            throw Error(ExitCode::input, "the imagery is too fine for the heights: more than 31 levels are needed");
-    }
-};
 
 /// Why a build cannot be gone on with, and what to do.
 [[noreturn]] void refuseResume(const std::filesystem::path& out, const std::string& reason) {
@@ -127,22 +31,28 @@ struct Preparation {
 /// One build, from sources to a directory with its final name.
 class DatasetBuild {
   public:
-    DatasetBuild(const HeightSource& heights, const BuildRequest& request, Preparation preparation)
+    DatasetBuild(const HeightSource& heights, const BuildRequest& request, BuildPreparation preparation)
         : heights_(heights),
           request_(request),
           preparation_(std::move(preparation)),
           observer_(request.observer != nullptr ? *request.observer : silent_),
           stop_(request.stop != nullptr ? *request.stop : never_),
-          output_(request.out, {.replace = request.replace, .resume = request.resume}) {
+          output_(request.out, {.replace = request.replace, .resume = request.resume}),
+          team_(request.ranks) {
         summary_.metadata = preparation_.metadata;
     }
 
     BuildSummary run() {
         if (output_.isPublished()) {
             takeWhole();
+            team_.begin({.isWhole = true}, stop_);
         } else {
             BuildJournal journal(output_.journal());
             const WorkPlan work = planOrTakeUp(journal);
+            team_.begin({.heading = journal.read(0),
+                         .workDirectory = std::filesystem::absolute(output_.workDirectory()),
+                         .journal = std::filesystem::absolute(output_.journal())},
+                        stop_);
             buildTiles(work, journal);
         }
         throwIfStopped(stop_);
@@ -171,16 +81,11 @@ class DatasetBuild {
     WorkPlan takeUp(BuildJournal& journal) const {
         const auto begun = decodeHeading(journal.read(0));
         if (!begun.ok()) refuseResume(request_.out, begun.failure().message);
-        requireSame(*begun);
-        std::optional<uint32_t> imageryDepth;
-        if (preparation_.photo) imageryDepth = begun->imageryDepth;
-        return planResumedWork(request_.jobs, request_.memoryBytes, begun->heightDepth, imageryDepth);
+        requireSame(preparation_.changesSince(*begun));
+        return preparation_.planAsBegun(*begun, request_);
     }
 
-    void requireSame(const BuildHeading& begun) const {
-        std::string changes;
-        for (const std::string& change : changesSince(begun, makeHeading(summary_.metadata, 0, 0)))
-            changes += (changes.empty() ? "" : "; ") + change;
+    void requireSame(const std::string& changes) const {
         if (!changes.empty()) refuseResume(request_.out, changes);
     }
 
@@ -196,7 +101,7 @@ class DatasetBuild {
         known.maxHeight = unbuilt.maxHeight;
         known.levelErrors = unbuilt.levelErrors;
         known.errorBound = unbuilt.errorBound;
-        requireSame(makeHeading(known, 0, 0));
+        requireSame(preparation_.changesSince(makeHeading(known, 0, 0)));
         observer_.note("there is nothing left to do: " + request_.out.string() + " is whole");
         summary_.metadata = whole;
     }
@@ -204,12 +109,14 @@ class DatasetBuild {
     void buildTiles(const WorkPlan& work, BuildJournal& journal) {
         DatasetMetadata& metadata = summary_.metadata;
         summary_.jobs = work.jobs;
+        summary_.processes = team_.processes();
         BuildContext context{.jobs = work.jobs,
                              .workDirectory = output_.workDirectory(),
                              .stop = stop_,
                              .observer = observer_,
                              .times = times_,
                              .journal = journal,
+                             .team = team_,
                              .firstTileDone = [this] { output_.keep(true); }};
 
         PyramidBlocks heightBlocks(Pyramid::heights, heightExtent(heights_.info()), context);
@@ -224,7 +131,10 @@ class DatasetBuild {
         if (preparation_.photo) {
             PyramidBlocks imageryBlocks(Pyramid::imagery, *preparation_.imagery(), context);
             buildImagery(work, imageryBlocks, context);
+            team_.part(times_, stop_);
             writeArchive(imageryBlocks, kImageryFile, *metadata.imageryLevel);
+        } else {
+            team_.part(times_, stop_);
         }
         writeArchive(heightBlocks, kHeightsFile, metadata.tiling.finestLevel);
     }
@@ -265,16 +175,56 @@ class DatasetBuild {
 
     const HeightSource& heights_;
     const BuildRequest& request_;
-    Preparation preparation_;
+    BuildPreparation preparation_;
     SilentObserver silent_;
     BuildObserver& observer_;
     std::atomic<bool> never_ = false;
     const std::atomic<bool>& stop_;
     OutputDirectory output_;
+    TeamLeader team_;
     BuildTimes times_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     BuildSummary summary_;
 };
+
+/// The share of a build that a process has which does not lead.
+BuildSummary buildAsMember(const HeightSource& heights, const BuildRequest& request,
+                           const BuildPreparation& preparation) {
+    const std::atomic<bool> never = false;
+    const std::atomic<bool>& stop = request.stop != nullptr ? *request.stop : never;
+    TeamMember team(*request.ranks);
+    const TeamOrders orders = team.begin(stop);
+    if (orders.isWhole) return {};
+    const auto begun = decodeHeading(orders.heading);
+    if (!begun.ok()) throw Error(ExitCode::usage, begun.failure().message);
+    const std::string changes = preparation.changesSince(*begun);
+    if (!changes.empty()) throw Error(ExitCode::usage, "sees something else than process 0: " + changes);
+
+    BuildTimes times;
+    {
+        const WorkPlan work = preparation.planAsBegun(*begun, request);
+        SilentObserver observer;
+        BuildJournal journal(orders.journal, BuildJournal::Access::follow);
+        BuildContext context{.jobs = work.jobs,
+                             .workDirectory = orders.workDirectory,
+                             .stop = stop,
+                             .observer = observer,
+                             .times = times,
+                             .journal = journal,
+                             .team = team,
+                             .firstTileDone = [] {}};
+        PyramidBlocks heightBlocks(Pyramid::heights, heightExtent(heights.info()), context);
+        (void)buildHeightPyramid(heights, work.heightDepth, {preparation.metadata.quantum, request.maxHeightError},
+                                 heightBlocks, context);
+        if (preparation.photo) {
+            PyramidBlocks imageryBlocks(Pyramid::imagery, *preparation.imagery(), context);
+            (void)buildImageryPyramid(*preparation.photo, *preparation.imagery(), work.imageryDepth, imageryBlocks,
+                                      context);
+        }
+    }
+    team.part(times, stop);
+    return {};
+}
 
 }  // namespace
 
@@ -304,7 +254,9 @@ PmtilesHeader archiveHeader(const DatasetMetadata& metadata, uint32_t finestLeve
 }
 
 BuildSummary buildDataset(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
-    DatasetBuild build(heights, request, Preparation(heights, openPhoto, request));
+    BuildPreparation preparation(heights, openPhoto, request);
+    if (request.ranks != nullptr && request.ranks->rank() != 0) return buildAsMember(heights, request, preparation);
+    DatasetBuild build(heights, request, std::move(preparation));
     try {
         return build.run();
     } catch (const Error& error) {
@@ -315,7 +267,7 @@ BuildSummary buildDataset(const HeightSource& heights, const OpenPhoto& openPhot
 }
 
 BuildEstimate estimateDataset(const HeightSource& heights, const OpenPhoto& openPhoto, const BuildRequest& request) {
-    const Preparation preparation(heights, openPhoto, request);
+    const BuildPreparation preparation(heights, openPhoto, request);
     const WorkPlan work = preparation.plan(heights, request);
     return estimateBuild(preparation.estimateInput(heights, work, request.memoryBytes));
 }

@@ -12,6 +12,7 @@
 #include "common/pmtiles.h"
 #include "preprocess/build_estimate.h"
 #include "preprocess/build_observer.h"
+#include "preprocess/ranks.h"
 #include "preprocess/raster_source.h"
 
 namespace terray {
@@ -35,6 +36,9 @@ struct BuildRequest {
     std::optional<uint32_t> blockDepth;       ///< levels in a block instead of the planned ones
     const std::atomic<bool>* stop = nullptr;  ///< once true the build ends with Error(interrupted)
     BuildObserver* observer = nullptr;        ///< told of progress; nullptr: nobody
+    /// The processes that build it together, each of which calls with the same request; nullptr: this one alone. The
+    /// one that leads makes `out`; all others return with an empty summary.
+    Ranks* ranks = nullptr;
 };
 
 /// What a build made and what it cost.
@@ -42,8 +46,9 @@ struct BuildSummary {
     DatasetMetadata metadata;
     uint64_t heightBytes = 0;   ///< of heights.pmtiles
     uint64_t imageryBytes = 0;  ///< of imagery.pmtiles
-    int jobs = 1;               ///< threads used
-    double seconds = 0;         ///< from first to last
+    int processes = 1;
+    int jobs = 1;        ///< threads used by the leading one
+    double seconds = 0;  ///< from first to last
     /// Seconds summed over all threads, by BuildStep.
     std::array<double, kBuildStepNames.size()> stepSeconds{};
 };

@@ -8,12 +8,12 @@
 
 namespace terray {
 
-ExitCode runExtract(const std::vector<std::string>& arguments, const std::atomic<bool>& stop) {
+ExitCode runExtract(const std::vector<std::string>& arguments, const std::atomic<bool>& stop, Ranks* ranks) {
     std::string directory;
     std::string bbox;
     int64_t levels = 0;
     bool hasLevels = false;
-    SharedOptions shared;
+    SharedOptions shared(ranks);
     CommandLine line("terray-preprocess extract", "Builds a smaller dataset of a part of another.");
     line.positional("DIR", directory, "the dataset to take from").required();
     line.option("--bbox", bbox, "W,S,E,N", "only this area, metres in the dataset's coordinate system");

@@ -77,7 +77,7 @@ class HeightPyramid {
                               .take = [&](const BlockRecord& record) { take(record); },
                               .level = above_ ? &above_->samples.file() : nullptr});
             if (stage.first) releaseSource();
-            if (below_) below_->samples.file().discard();
+            if (below_) blocks_.discard(below_->samples.file());
             std::swap(below_, above_);
         }
         if (totals_.tiles == 0)

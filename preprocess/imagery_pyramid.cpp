@@ -104,7 +104,7 @@ class ImageryPyramid {
                               .take = [&](const BlockRecord& record) { take(record); },
                               .level = above_ ? &above_->file() : nullptr});
             if (stage.first) releaseSource();
-            if (below_) below_->file().discard();
+            if (below_) blocks_.discard(below_->file());
             std::swap(below_, above_);
         }
         if (blocks_.tiles() == 0)

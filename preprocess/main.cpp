@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "preprocess/commands.h"
+#include "preprocess/ranks.h"
 
 namespace {
 
@@ -30,6 +31,7 @@ void installSignals() {
 
 int exitWith(terray::ExitCode code, const char* message) {
     std::fprintf(stderr, "terray-preprocess: %s\n", message);
+    terray::endAllRanks(code);
     return static_cast<int>(code);
 }
 

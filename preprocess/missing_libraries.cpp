@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "preprocess/bc1.h"
 #include "preprocess/plain_image.h"
+#include "preprocess/ranks.h"
 #include "preprocess/raster_files.h"
 
 namespace terray {
@@ -56,6 +57,13 @@ bool isReadableImage(const std::string&) {
 Bytes encodeBc1(GridView<const Rgba>) {
     refuse("compress imagery", "stb_dxt", "TERRAY_WITH_STB");
 }
+#endif
+
+#if !TERRAY_WITH_MPI
+std::unique_ptr<Ranks> joinRanks() {
+    refuse("work as one of several processes", "MPI", "TERRAY_WITH_MPI");
+}
+void endAllRanks(ExitCode) {}
 #endif
 
 }  // namespace terray

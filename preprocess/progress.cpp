@@ -140,6 +140,7 @@ void printJsonSummary(const BuildSummary& summary) {
                                      {"heightBytes", summary.heightBytes},
                                      {"imageryTiles", summary.metadata.imageryTiles},
                                      {"imageryBytes", summary.imageryBytes},
+                                     {"processes", summary.processes},
                                      {"jobs", summary.jobs},
                                      {"seconds", summary.seconds},
                                      {"stepSeconds", steps},
@@ -149,7 +150,9 @@ void printJsonSummary(const BuildSummary& summary) {
 /// A table of the steps, so that a user sees what bounds the run.
 void printSteps(const BuildSummary& summary) {
     const double all = std::accumulate(summary.stepSeconds.begin(), summary.stepSeconds.end(), 0.0);
-    std::printf("time: %.2f s on %d jobs; of all threads:\n", summary.seconds, summary.jobs);
+    const std::string processes =
+        summary.processes > 1 ? std::to_string(summary.processes) + " processes of " : std::string();
+    std::printf("time: %.2f s on %s%d jobs; of all threads:\n", summary.seconds, processes.c_str(), summary.jobs);
     for (size_t step = 0; step < kBuildStepNames.size(); ++step)
         std::printf("  %-7s %9.2f s %4.0f %%\n", kBuildStepNames[step], summary.stepSeconds[step],
                     100 * summary.stepSeconds[step] / std::max(all, 1e-9));

@@ -34,11 +34,9 @@ PyramidBlocks::PyramidBlocks(Pyramid pyramid, const PyramidExtent& extent, Build
       extent_(extent),
       context_(context),
       spill_(context.workDirectory / (std::string(nameOf(pyramid)) + "-tiles")) {
+    if (!context.team.leads()) return;
     uint64_t end = 0;
-    context.journal.forEach([&](uint64_t place, ByteView content) {
-        if (place == 0) return;
-        const BlockRecord record = requireRecord(content);
-        if (record.pyramid != pyramid) return;
+    forEachRecord([&](uint64_t place, const BlockRecord& record) {
         found_[record.bottom].push_back(place);
         for (const StoredTile& tile : record.tiles) end = std::max(end, tile.offset + tile.length);
     });
@@ -47,30 +45,77 @@ PyramidBlocks::PyramidBlocks(Pyramid pyramid, const PyramidExtent& extent, Build
 
 void PyramidBlocks::runStage(const BlockStage& stage, const StageWork& work) {
     const std::vector<TileId> blocks = blocksOf(extent_, stage);
-    Stage& running = stages_.emplace_back(Stage{stage, std::vector<uint64_t>(blocks.size(), 0)});
-    const uint64_t done = takeUp(blocks, running, work);
-    if (work.begin && done < blocks.size()) work.begin();
-    context_.observer.stageBegins(stageName(pyramid_, stage), blocks.size(), done);
-
     std::vector<WorkFile*> data = {&spill_};
     if (work.level != nullptr) data.push_back(work.level);
-    forEachParallel(blocks.size(), context_.jobs, context_.stop, [&](int worker, size_t item) {
-        if (running.places[item] != 0) return;
-        BlockRecord record{.pyramid = pyramid_, .bottom = stage.bottom, .top = blocks[item]};
+    TeamStage task{.jobs = context_.jobs, .stop = context_.stop, .spillEnd = spillEnd_, .begin = work.begin};
+    task.build = [&](size_t block, int worker) {
+        BlockRecord record{.pyramid = pyramid_, .bottom = stage.bottom, .top = blocks.at(block)};
         work.build(record, worker);
         record.sortTiles();
+        return record;
+    };
+    if (context_.team.leads())
+        lead(stage, work, blocks, data, task);
+    else
+        follow(stage, work, data, task);
+}
+
+void PyramidBlocks::lead(const BlockStage& stage, const StageWork& work, const std::vector<TileId>& blocks,
+                         std::span<WorkFile* const> data, TeamStage& task) {
+    Stage& running = stages_.emplace_back(Stage{stage, std::vector<uint64_t>(blocks.size(), 0)});
+    const uint64_t done = takeUp(blocks, running, work);
+    for (size_t block = 0; block < blocks.size(); ++block)
+        if (running.places[block] == 0) task.blocks.push_back(block);
+    const auto tellStage = [&] { context_.observer.stageBegins(stageName(pyramid_, stage), blocks.size(), done); };
+    task.begin = [&] {
+        if (work.begin) work.begin();
+        tellStage();
+    };
+    if (task.blocks.empty()) tellStage();
+
+    task.keep = [&](size_t block, const BlockRecord& record, bool isOwn) {
         {
             const StepTimer timer(context_.times, BuildStep::write);
-            const std::span<WorkFile* const> written(data.data(), record.tiles.empty() ? 0 : data.size());
-            running.places[item] = context_.journal.commit(encodeBlockRecord(record), written);
+            const bool isToSync = isOwn && !record.tiles.empty();
+            running.places.at(block) =
+                context_.journal.commit(encodeBlockRecord(record), data.first(isToSync ? data.size() : 0));
         }
         const std::scoped_lock lock(context_.mutex);
         work.take(record);
         count(record);
         context_.observer.blockDone(context_.tiles, context_.bytes);
-    });
+    };
     // The next stage takes away what this one has read, so that all of this one must be safe.
-    context_.journal.sync();
+    task.end = [&] { context_.journal.sync(); };
+    context_.team.runStage(task);
+    if (context_.team.processes() > 1)
+        for (WorkFile* const file : data) file->reopen();
+}
+
+void PyramidBlocks::follow(const BlockStage& stage, const StageWork& work, std::span<WorkFile* const> data,
+                           TeamStage& task) {
+    task.sync = [&](const BlockRecord& record) {
+        if (record.tiles.empty()) return;
+        const StepTimer timer(context_.times, BuildStep::write);
+        for (WorkFile* const file : data) file->sync();
+    };
+    context_.team.runStage(task);
+    for (WorkFile* const file : data) file->reopen();
+    context_.journal.refresh();
+    forEachRecord([&](uint64_t, const BlockRecord& record) {
+        if (record.bottom != stage.bottom) return;
+        const std::scoped_lock lock(context_.mutex);
+        work.take(record);
+        count(record);
+    });
+}
+
+void PyramidBlocks::forEachRecord(const std::function<void(uint64_t place, const BlockRecord& record)>& visit) const {
+    context_.journal.forEach([&](uint64_t place, ByteView content) {
+        if (place == 0) return;
+        const BlockRecord record = requireRecord(content);
+        if (record.pyramid == pyramid_) visit(place, record);
+    });
 }
 
 std::filesystem::path PyramidBlocks::workspaceDirectory() const {
@@ -87,7 +132,12 @@ SourceWorkspace PyramidBlocks::workspace() const {
 }
 
 void PyramidBlocks::release() {
-    std::filesystem::remove_all(workspaceDirectory());
+    context_.team.meet(context_.stop);
+    if (context_.team.leads()) std::filesystem::remove_all(workspaceDirectory());
+}
+
+void PyramidBlocks::discard(WorkFile& level) {
+    if (context_.team.leads()) level.discard();
 }
 
 uint64_t PyramidBlocks::takeUp(const std::vector<TileId>& blocks, Stage& stage, const StageWork& work) {
@@ -115,7 +165,7 @@ void PyramidBlocks::count(const BlockRecord& record) {
 
 void PyramidBlocks::store(BlockRecord& record, const TileId& id, ByteView payload) {
     const StepTimer timer(context_.times, BuildStep::write);
-    const uint64_t offset = spillEnd_.fetch_add(payload.size());
+    const uint64_t offset = context_.team.reserve(payload.size());
     spill_.write(offset, payload);
     record.tiles.push_back({id, offset, static_cast<uint32_t>(payload.size())});
 }

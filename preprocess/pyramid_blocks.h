@@ -34,12 +34,13 @@ class PyramidBlocks {
         std::function<void()> begin = {};
         /// Makes a block; the record's tiles are those that it stored. Called on several threads.
         std::function<void(BlockRecord& record, int worker)> build;
-        /// Takes the record of a block that is done, also of an earlier run; one call at a time.
+        /// Takes the record of a block that is done, also of an earlier run or by another process; one call at a time.
         std::function<void(const BlockRecord& record)> take;
         /// Written by build() beside the tiles; on the disk before a block counts as done. May be nullptr.
         WorkFile* level = nullptr;
     };
-    /// Runs every block of a stage that is not done yet. Throws what build() throws, Error(interrupted), Error(output).
+    /// Runs every block of a stage that is not done yet, with the others of the team, and returns when all are done.
+    /// Throws what build() throws, Error(interrupted), Error(output).
     void runStage(const BlockStage& stage, const StageWork& work);
 
     /// Makes a source ready for reading (HeightSource::prepare and the photo's), in a directory that release() removes.
@@ -47,7 +48,10 @@ class PyramidBlocks {
     void prepare(const Source& source) {
         source.prepare(workspace());
     }
+    /// Called when no reader of this process is open any more; waits for all processes of the build.
     void release();
+    /// Takes a level between two stages off the disk, once nobody reads it any more.
+    void discard(WorkFile& level);
 
     /// Adds a finished tile to a block in work. Thread-safe for different records.
     void store(BlockRecord& record, const TileId& id, ByteView payload);
@@ -67,6 +71,11 @@ class PyramidBlocks {
     };
     void forEachTile(const std::function<void(const StoredTile&)>& visit) const;
     [[nodiscard]] BlockRecord recordAt(uint64_t place) const;
+    void lead(const BlockStage& stage, const StageWork& work, const std::vector<TileId>& blocks,
+              std::span<WorkFile* const> data, TeamStage& task);
+    void follow(const BlockStage& stage, const StageWork& work, std::span<WorkFile* const> data, TeamStage& task);
+    /// Records of this pyramid, in the order in which they came into the journal.
+    void forEachRecord(const std::function<void(uint64_t place, const BlockRecord& record)>& visit) const;
     /// Takes what earlier runs did of a stage. @return blocks
     uint64_t takeUp(const std::vector<TileId>& blocks, Stage& stage, const StageWork& work);
     void count(const BlockRecord& record);

@@ -1,5 +1,5 @@
-# Where heights and photos come from, and the encoder of photos. Each of GDAL, OpenImageIO and stb has its own library here;
-# built without it, that library answers with Error(unsupported).
+# Where heights and photos come from, the encoder of photos, and the other processes of a build. Each of GDAL,
+# OpenImageIO, stb and MPI has its own library here; built without it, that library answers with Error(unsupported).
 
 # What needs no foreign library: choice of grids and levels, the procedural terrain, the answers of the missing.
 add_library(terray_raster_base STATIC
@@ -29,4 +29,12 @@ if(TERRAY_WITH_STB)
 else()
     add_library(terray_bc1 INTERFACE)
     target_link_libraries(terray_bc1 INTERFACE terray_raster_base)
+endif()
+
+if(TERRAY_WITH_MPI)
+    add_library(terray_mpi STATIC mpi_ranks.cpp)
+    target_link_libraries(terray_mpi PUBLIC terray_raster_base PRIVATE terray::mpi)
+else()
+    add_library(terray_mpi INTERFACE)
+    target_link_libraries(terray_mpi INTERFACE terray_raster_base)
 endif()

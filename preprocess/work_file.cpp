@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -21,12 +22,15 @@ namespace {
                 "cannot " + action + " temporary file " + path.string() + ": " + std::strerror(reason) + hint);
 }
 
+int openOrCreate(const std::filesystem::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) fail("create", path);
+    return descriptor;
+}
+
 }  // namespace
 
-WorkFile::WorkFile(std::filesystem::path path)
-    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail("create", path_);
-}
+WorkFile::WorkFile(std::filesystem::path path) : path_(std::move(path)), descriptor_(openOrCreate(path_)) {}
 
 WorkFile::~WorkFile() {
     ::close(descriptor_);
@@ -55,6 +59,11 @@ void WorkFile::read(uint64_t offset, std::span<std::byte> bytes) const {
 
 void WorkFile::sync() {
     if (::fdatasync(descriptor_) != 0) fail("write", path_);
+}
+
+void WorkFile::reopen() {
+    const int fresh = openOrCreate(path_);
+    ::close(std::exchange(descriptor_, fresh));
 }
 
 uint64_t WorkFile::size() const {

@@ -25,6 +25,8 @@ class WorkFile {
     void read(uint64_t offset, std::span<std::byte> bytes) const;
     /// Returns once all that was written so far survives a power cut.
     void sync();
+    /// Sees what other machines have synced: a network file system may keep an open file as it was when it was opened.
+    void reopen();
     [[nodiscard]] uint64_t size() const;
     /// Cuts the file off after `bytes`.
     void truncate(uint64_t bytes);

@@ -60,6 +60,7 @@ FOREIGN = {
     "OpenImageIO": (r"OpenImageIO/.*", {"preprocess": 1, "client/output": MANY}),
     "OpenEXR": (r"(OpenEXR|Imath)/.*|(Imf|Imath|Iex|half)\w*\.h", {"client/output": MANY}),
     "stb": (r"(stb/)?stb_\w+\.h", {"preprocess": 1}),
+    "MPI": (r"mpi\.h", {"preprocess": 1}),
     "libsquish": (r"squish\.h", {}),
     "pugixml": (r"pugixml\.hpp", {"client/overlay": 1, "client/exchange": 1}),
     "Boost": (r"boost/.*", {"server": MANY}),

@@ -1,6 +1,7 @@
 #include "common/parallel.h"
 
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -24,6 +25,21 @@ TEST(Parallel, DoesEveryItemOnceOnWorkersInRange) {
     }
     const std::atomic<bool> stop = false;
     forEachParallel(0, 3, stop, [](int, size_t) { FAIL() << "there was nothing to do"; });
+}
+
+TEST(Parallel, DoesTheItemsThatItIsGivenAndEndsWithAFailureToGiveOne) {
+    const std::atomic<bool> stop = false;
+    std::atomic<int> left = 50;
+    std::atomic<int> sum = 0;
+    const auto next = [&]() -> std::optional<size_t> {
+        const int item = --left;
+        return item < 0 ? std::nullopt : std::optional(static_cast<size_t>(item));
+    };
+    forEachParallel(next, 3, stop, [&](int, size_t item) { sum += static_cast<int>(item); });
+    EXPECT_EQ(sum, 49 * 50 / 2);
+    const auto failing = []() -> std::optional<size_t> { throw std::runtime_error("nobody answers"); };
+    EXPECT_THROW(forEachParallel(failing, 3, stop, [](int, size_t) { FAIL() << "nothing was given"; }),
+                 std::runtime_error);
 }
 
 TEST(Parallel, ReportsTheFailureOfTheLowestItemAndStops) {
