@@ -31,8 +31,8 @@ PROJECT = {
     "client/output": ["common"],
     "client/engine": ["common", "client/stream", "client/overlay", "client/render"],
     "client/view": [
-        "common", "client/stream", "client/navigation", "client/exchange", "client/render", "client/output",
-        "client/engine",
+        "common", "client/stream", "client/overlay", "client/navigation", "client/exchange", "client/render",
+        "client/output", "client/engine",
     ],
     "client/bench": [
         "common", "common/reference", "shaders/math", "client/stream", "client/exchange", "client/render",

@@ -368,6 +368,10 @@ void Engine::addEdit(TerrainEdit edit) {
     setEdits(std::move(edits));
 }
 
+void Engine::setOverlay(std::span<const OverlayMesh> meshes) {
+    state_->renderer.setOverlay(meshes);
+}
+
 const FrameTargets& Engine::targets() const {
     return state_->targets;
 }

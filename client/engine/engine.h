@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -130,6 +131,9 @@ class Engine {
     void setEdits(EditList edits);
     /// The same list with one more at its end.
     void addEdit(TerrainEdit edit);
+
+    /// From the next frame on draws these in place of EngineOptions::overlay and those given before.
+    void setOverlay(std::span<const OverlayMesh> meshes);
 
     [[nodiscard]] const FrameTargets& targets() const;
     /// The nodes of the last frame; node index plus 1 is what targets().readNodes() holds.

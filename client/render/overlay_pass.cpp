@@ -17,7 +17,7 @@ GlBuffer uploaded(const void* data, size_t bytes) {
 
 }  // namespace
 
-OverlayPass::OverlayPass(const ShaderLibrary& shaders, std::span<const OverlayMesh> meshes)
+OverlayPass::OverlayPass(const ShaderLibrary& shaders)
     : programs_(shaders, {"overlay.vert", "overlay.frag"}), vertexArray_(makeVertexArray()) {
     const auto attribute = [&](GLuint location, size_t offset) {
         glEnableVertexArrayAttrib(vertexArray_.name(), location);
@@ -27,6 +27,11 @@ OverlayPass::OverlayPass(const ShaderLibrary& shaders, std::span<const OverlayMe
     attribute(0, offsetof(OverlayVertex, anchor));
     attribute(1, offsetof(OverlayVertex, offset));
     attribute(2, offsetof(OverlayVertex, normal));
+}
+
+void OverlayPass::setMeshes(std::span<const OverlayMesh> meshes) {
+    meshes_.clear();
+    bytes_ = 0;
     for (const OverlayMesh& mesh : meshes) {
         if (mesh.indices.empty()) continue;
         const size_t vertexBytes = mesh.vertices.size() * sizeof(OverlayVertex);

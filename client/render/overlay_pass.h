@@ -16,8 +16,11 @@ namespace terray {
 /// Hits, nodes and normals that the targets hold stay the terrain's; only colour is drawn. GL thread only.
 class OverlayPass {
   public:
-    /// Uploads the meshes. @param shaders  outlives the pass
-    OverlayPass(const ShaderLibrary& shaders, std::span<const OverlayMesh> meshes);
+    /// @param shaders  outlives the pass
+    explicit OverlayPass(const ShaderLibrary& shaders);
+
+    /// Uploads the meshes, in place of those before.
+    void setMeshes(std::span<const OverlayMesh> meshes);
 
     /// @param frame  resolved; its frame buffer, hit and node textures and viewport are bound
     void draw(const CastFrame& frame);

@@ -238,7 +238,12 @@ Launch TerrainRenderer::launchOf(const CastFrame& frame, const RenderOptions& op
 }
 
 void TerrainRenderer::setOverlay(std::span<const OverlayMesh> meshes) {
-    overlay_ = meshes.empty() ? nullptr : std::make_unique<OverlayPass>(shaders_, meshes);
+    if (meshes.empty()) {
+        overlay_.reset();
+        return;
+    }
+    if (!overlay_) overlay_ = std::make_unique<OverlayPass>(shaders_);
+    overlay_->setMeshes(meshes);
 }
 
 void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, std::span<const DrawNode> casters,

@@ -21,14 +21,19 @@ struct Shortcut {
     Command command;
 };
 constexpr Shortcut kShortcuts[] = {
-    {Key::f1, false, Command::help},          {letter('H'), false, Command::panel},
-    {letter('O'), false, Command::overlay},   {letter('F'), false, Command::freeze},
-    {letter('T'), false, Command::measure},   {Key::f11, false, Command::fullScreen},
-    {letter('V'), false, Command::vsync},     {Key::home, false, Command::home},
-    {letter('N'), false, Command::north},     {letter('G'), false, Command::goTo},
-    {letter('C'), true, Command::copyCamera}, {letter('P'), false, Command::picture},
-    {letter('R'), false, Command::record},    {letter('L'), false, Command::replay},
-    {Key::escape, false, Command::cancel},    {letter('Q'), true, Command::quit},
+    {Key::f1, false, Command::help},           {letter('H'), false, Command::panel},
+    {letter('O'), false, Command::overlay},    {letter('F'), false, Command::freeze},
+    {letter('T'), false, Command::measure},    {Key::f11, false, Command::fullScreen},
+    {letter('V'), false, Command::vsync},      {Key::home, false, Command::home},
+    {letter('N'), false, Command::north},      {letter('G'), false, Command::goTo},
+    {letter('C'), true, Command::copyCamera},  {letter('P'), false, Command::picture},
+    {letter('R'), false, Command::record},     {letter('L'), false, Command::replay},
+    {letter('K'), false, Command::edit},       {Key::insert, false, Command::insertKey},
+    {Key::enter, false, Command::moveKey},     {Key::remove, false, Command::deleteKey},
+    {Key::comma, false, Command::previousKey}, {Key::period, false, Command::nextKey},
+    {letter('Z'), true, Command::undo},        {letter('Y'), true, Command::redo},
+    {letter('S'), true, Command::save},        {Key::escape, false, Command::cancel},
+    {letter('Q'), true, Command::quit},
 };
 
 std::optional<NavigationMode> modeOf(Key key) {

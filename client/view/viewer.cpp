@@ -57,7 +57,6 @@ Viewer::State::State(const TileSource& tiles, const ShaderLibrary& shaders, cons
       controls(navigator, [this](glm::dvec2 pixel) { return pick(pixel); }),
       settings(settingsFrom(options.engine, source.metadata())),
       bookmarksFile(options.bookmarks) {
-    options.engine.overlay.clear();  // it is on the GPU
     settings.vsync = options.window.vsync;
     settings.targetFps = options.targetFps;
     restorePanels(options.remembered, settings);
@@ -94,7 +93,8 @@ std::optional<glm::dvec3> Viewer::State::pick(glm::dvec2 pixel) const {
 }
 
 bool Viewer::State::moving() const {
-    return navigator.moving() || controls.motion() != Motion{} || replayed || quality.sharpening();
+    return navigator.moving() || controls.motion() != Motion{} || replayed || quality.sharpening() ||
+           (editor && editor->playing());
 }
 
 void Viewer::State::take(const WindowEvent& event) {
@@ -117,7 +117,13 @@ void Viewer::State::take(const WindowEvent& event) {
 void Viewer::State::moveCamera(double flown) {
     if (const auto gamepad = window.gamepad()) controls.handle(*gamepad, flown);
     const Motion motion = controls.motion();
-    if (replayed && motion == Motion{} && !controls.capturesCursor()) {
+    const bool steered = motion != Motion{} || controls.capturesCursor();
+    if (editor && steered) editor->pause();
+    if (editor && editor->playing()) {
+        editor->advance(flown);
+        lookAtMoment();
+        uncomposed = std::max(uncomposed, 1);
+    } else if (replayed && !steered) {
         replayed = *replayed + flown;
         navigator.place(lastFlight.at(*replayed));
         if (*replayed >= lastFlight.seconds()) replayed.reset();
@@ -139,7 +145,7 @@ bool Viewer::State::advance(const std::vector<WindowEvent>& events, double secon
     }
     if (window.iconified()) return false;
     stale |= (retryAt && clock >= *retryAt) || quality.sharpening();
-    const bool redraw = stale || paging || navigator.camera() != drawn;
+    const bool redraw = stale || wantedMarks() != marked || paging || navigator.camera() != drawn;
     if (redraw) draw(seconds);
     if (!redraw && uncomposed == 0) return false;
     uncomposed = std::max(uncomposed - 1, 0);
@@ -152,6 +158,7 @@ void Viewer::State::draw(double seconds) {
     applyQuality();
     if (navigator.camera() != drawn) barrenFrames = 0;
     drawn = navigator.camera();
+    drawMarks();
     try {
         // While a flight is recorded its pictures are those of its poses as the file will tell them.
         report = engine.drawFrame(recorder ? asWritten(drawn) : drawn, false);
@@ -266,6 +273,10 @@ const std::string& Viewer::notice() const {
 
 bool Viewer::frozen() const {
     return state_->frozen;
+}
+
+const FlightEditor* Viewer::editor() const {
+    return state_->editor ? &*state_->editor : nullptr;
 }
 
 Grid<Rgba> Viewer::screenshot() {

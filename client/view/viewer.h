@@ -31,6 +31,8 @@ struct ViewerOptions {
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();  ///< of the program
 };
 
+class FlightEditor;
+
 /// The flight viewer: a window, a camera that a person flies, and the engine that draws what it sees, on demand: a
 /// frame is drawn when something moved, has come or was uncovered, and at no other time. Main thread only.
 ///
@@ -60,6 +62,8 @@ class Viewer {
     [[nodiscard]] const std::string& notice() const;
     /// Whether it shows what was selected for an earlier camera (F).
     [[nodiscard]] bool frozen() const;
+    /// The flight that is edited (K); null when none is.
+    [[nodiscard]] const FlightEditor* editor() const;
     /// What the window shows: the last frame with all that is drawn over it.
     [[nodiscard]] Grid<Rgba> screenshot();
     /// Milliseconds from the program's start to its first picture, and to the first whose tiles were all there.

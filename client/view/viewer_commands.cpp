@@ -106,6 +106,19 @@ void Viewer::State::obey(const CommandEvent& event) {
             case Command::replay:
                 startOrStopReplay();
                 break;
+            case Command::edit:
+                openOrCloseEditor();
+                break;
+            case Command::insertKey:
+            case Command::moveKey:
+            case Command::deleteKey:
+            case Command::previousKey:
+            case Command::nextKey:
+            case Command::undo:
+            case Command::redo:
+            case Command::save:
+                edit(event.command);
+                break;
             case Command::recall:
             case Command::store:
                 recallOrStore(event);
@@ -123,6 +136,7 @@ void Viewer::State::cancel() {
     if (measuring) tape.clear();
     help = goTo = measuring = false;
     replayed.reset();
+    if (editor) editor->pause();
 }
 
 void Viewer::State::recallOrStore(const CommandEvent& event) {
@@ -174,6 +188,9 @@ void Viewer::State::takePicture() {
     const std::filesystem::path path = pictureName("", ".png");
     const glm::ivec2 size = window.size();
     engine.freezeSelection(false);
+    // What the editor draws is none of the picture that its JSON draws again.
+    if (marked) engine.setOverlay(options.engine.overlay);
+    marked.reset();
     const auto restore = [&] {
         engine.setOptions(settings.engine);
         engine.freezeSelection(frozen);
@@ -210,11 +227,14 @@ void Viewer::State::startOrSaveRecording() {
     lastFlight = recorder->flight(options.datasetName, "recorded " + stamp());
     recorder.reset();
     saveFlight(lastFlight, path, projectionOrNull());
+    if (editor) editor->replace(lastFlight);
     say("flight of " + numberText(std::round(10 * lastFlight.seconds()) / 10) + " s: " + path.string());
 }
 
 void Viewer::State::startOrStopReplay() {
-    if (replayed) {
+    if (editor) {
+        editor->playing() ? editor->pause() : editor->play();
+    } else if (replayed) {
         replayed.reset();
     } else if (lastFlight.keys.empty()) {
         say("nothing was recorded: R records a flight");

@@ -46,6 +46,7 @@ void Viewer::State::declareGui() {
                          .steps = steps,
                          .picture = {engine.targets().width(), engine.targets().height()},
                          .camera = cameraLine()});
+    if (editor) declareEditor();
     if (help) drawHelp(help);
     if (goTo)
         if (const auto text = drawGoTo(goTo, goToFailure)) goToPlace(*text);

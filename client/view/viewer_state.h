@@ -7,6 +7,8 @@
 #include "client/navigation/tape.h"
 #include "client/render/screen.h"
 #include "client/stream/flight_recorder.h"
+#include "client/view/editor_panel.h"
+#include "client/view/flight_editor.h"
 #include "client/view/frame_history.h"
 #include "client/view/gui.h"
 #include "client/view/instruments.h"
@@ -17,7 +19,7 @@
 namespace terray {
 
 /// All that a viewer is made of: the loop is in viewer.cpp, what a person asks for in viewer_commands.cpp, what is
-/// drawn over the picture in viewer_gui.cpp.
+/// drawn over the picture in viewer_gui.cpp, editing flights in viewer_editing.cpp.
 struct Viewer::State {
     State(const TileSource& tiles, const ShaderLibrary& shaders, const ViewerOptions& given);
     ~State();
@@ -50,6 +52,16 @@ struct Viewer::State {
     void startOrSaveRecording();
     void startOrStopReplay();
     void cancel();
+    /// What is done to the flight that is edited; nothing when none is.
+    void edit(Command command);
+    void openOrCloseEditor();
+    void saveEdited();
+    void loadToEdit();
+    /// Puts the camera to where the edited flight is at its moment.
+    void lookAtMoment();
+    /// The revision of the edited flight whose marks belong in the picture; none without editor and on the path itself.
+    [[nodiscard]] std::optional<uint64_t> wantedMarks() const;
+    void drawMarks();
     /// After settings have changed.
     void applySettings();
     /// Settings with the tolerances and photo of the quality that the frame rate allows.
@@ -61,6 +73,7 @@ struct Viewer::State {
     void declareGui();
     void declareMap();
     void declareTape();
+    void declareEditor();
     [[nodiscard]] std::string readout();
     [[nodiscard]] std::string cameraLine() const;
     /// The view of the window, whatever the picture's own size.
@@ -109,6 +122,10 @@ struct Viewer::State {
     std::optional<FlightRecorder> recorder;
     Flight lastFlight;
     std::optional<double> replayed;  ///< seconds of lastFlight that have been shown
+    std::optional<FlightEditor> editor;
+    EditorPanel editorPanel;
+    std::optional<std::filesystem::path> editedFile;  ///< what the editor loaded or saved, and may replace
+    std::optional<uint64_t> marked;                   ///< revision of the flight whose marks are in the picture
 };
 
 }  // namespace terray

@@ -31,6 +31,8 @@ Key keyOf(int glfwKey) {
         {GLFW_KEY_RIGHT, Key::right},
         {GLFW_KEY_UP, Key::up},
         {GLFW_KEY_DOWN, Key::down},
+        {GLFW_KEY_INSERT, Key::insert},
+        {GLFW_KEY_DELETE, Key::remove},
         {GLFW_KEY_LEFT_SHIFT, Key::shift},
         {GLFW_KEY_RIGHT_SHIFT, Key::shift},
         {GLFW_KEY_F1, Key::f1},
@@ -44,7 +46,8 @@ Key keyOf(int glfwKey) {
         std::find_if(std::begin(kNamed), std::end(kNamed), [&](const auto& entry) { return entry.first == glfwKey; });
     if (named != std::end(kNamed)) return named->second;
     // GLFW's codes of these are their ASCII codes.
-    const bool plain = glfwKey == GLFW_KEY_SPACE || (glfwKey >= GLFW_KEY_0 && glfwKey <= GLFW_KEY_9) ||
+    const bool plain = glfwKey == GLFW_KEY_SPACE || glfwKey == GLFW_KEY_COMMA || glfwKey == GLFW_KEY_PERIOD ||
+                       (glfwKey >= GLFW_KEY_0 && glfwKey <= GLFW_KEY_9) ||
                        (glfwKey >= GLFW_KEY_A && glfwKey <= GLFW_KEY_Z);
     return plain ? static_cast<Key>(glfwKey) : Key::none;
 }

@@ -7,10 +7,13 @@
 
 namespace terray {
 
-/// The keys that mean something to the viewer. Letters, digits and space are their ASCII codes, letters as capitals.
+/// The keys that mean something to the viewer. Letters, digits, comma, period and space are their ASCII
+/// codes, letters as capitals.
 enum class Key : uint16_t {
     none = 0,
     space = ' ',
+    comma = ',',
+    period = '.',
     escape = 256,
     enter,
     tab,
@@ -21,6 +24,8 @@ enum class Key : uint16_t {
     right,
     up,
     down,
+    insert,
+    remove,
     shift,
     f1,
     f2,

@@ -136,6 +136,10 @@ TEST_F(ControlsTest, KeysAreCommands) {
     EXPECT_EQ(type(letter('Q'), true), CommandEvent{Command::quit});
     EXPECT_EQ(type(letter('Q')), std::nullopt) << "down";
     EXPECT_EQ(type(letter('0')), std::nullopt);
+    EXPECT_EQ(type(letter('K')), CommandEvent{Command::edit});
+    EXPECT_EQ(type(Key::insert), CommandEvent{Command::insertKey});
+    EXPECT_EQ(type(letter('S'), true), CommandEvent{Command::save});
+    EXPECT_EQ(type(letter('S')), std::nullopt) << "backwards";
     type(Key::f5);
     EXPECT_EQ(navigator_.mode(), NavigationMode::walk);
 }

@@ -87,7 +87,8 @@ class Hand {
         static constexpr Key kKeys[] = {Key::f1,     Key::f2,     Key::f3,     Key::f4,     Key::f5,
                                         Key::home,   Key::escape, letter('H'), letter('O'), letter('F'),
                                         letter('T'), letter('N'), letter('G'), letter('1'), letter('2'),
-                                        letter('1'), letter('2'), letter('L'), letter('C')};
+                                        letter('1'), letter('2'), letter('L'), letter('C'), letter('K'),
+                                        Key::insert, Key::enter,  Key::remove, Key::comma,  Key::period};
         return kKeys[random_.below(std::size(kKeys))];
     }
 

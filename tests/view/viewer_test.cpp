@@ -9,6 +9,7 @@
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
 #include "client/stream/flight.h"
+#include "client/view/flight_editor.h"
 #include "client/view/view.h"
 #include "tests/common/temporary_directory.h"
 #include "tests/support/analytic_dataset.h"
@@ -159,6 +160,80 @@ TEST_F(ViewerTest, RecordsWhatWasFlownAndReplaysIt) {
     type(*viewer, letter('L'));
     viewer->turnFor(0.23);
     EXPECT_LT(glm::distance(viewer->navigator().camera().position, flight.at(0.25).position), 1e-6);
+}
+
+TEST_F(ViewerTest, EditsAFlightKeyByKeyShowsItsPathAndSavesIt) {
+    const auto viewer = open();
+    settle(*viewer);
+    bare(*viewer);
+    type(*viewer, letter('K'));
+    ASSERT_NE(viewer->editor(), nullptr);
+    type(*viewer, Key::insert);
+    hold(*viewer, letter('S'), 1);  // back, so that the path lies ahead
+    type(*viewer, Key::insert);
+    hold(*viewer, letter('D'), 1);
+    type(*viewer, Key::insert);
+    type(*viewer, Key::comma);
+    const Flight three = viewer->editor()->flight();
+    ASSERT_EQ(three.keys.size(), 3u);
+    EXPECT_EQ(viewer->navigator().camera(), three.keys[1].camera) << "the camera follows";
+    hold(*viewer, letter('E'), 0.5);
+    const Camera higher = viewer->navigator().camera();
+    type(*viewer, Key::enter);
+    EXPECT_EQ(viewer->editor()->flight().keys[1].camera, asWritten(higher));
+    type(*viewer, Key::period);
+    type(*viewer, Key::remove);
+    EXPECT_EQ(viewer->editor()->flight().keys.size(), 2u);
+    type(*viewer, letter('Z'), true);
+    EXPECT_EQ(viewer->editor()->flight().keys.size(), 3u);
+    type(*viewer, letter('S'), true);
+    const Flight saved = loadFlight(written(".json"));
+    EXPECT_EQ(saved.keys, viewer->editor()->flight().keys);
+
+    // Played, the camera goes where the file says.
+    type(*viewer, letter('L'));
+    EXPECT_TRUE(viewer->editor()->playing());
+    viewer->turnFor(1);
+    EXPECT_LT(glm::distance(viewer->navigator().camera().position, saved.at(viewer->editor()->seconds()).position),
+              1e-6);
+    type(*viewer, letter('L'));
+    EXPECT_FALSE(viewer->editor()->playing());
+
+    // From the side the path is in the picture, and it goes with the editor.
+    type(*viewer, Key::home);
+    for (int n = 0; n < 100 && viewer->navigator().flying(); ++n) viewer->turnFor(0.1);
+    settle(*viewer);
+    const Picture marked = viewer->engine().targets().readSrgb();
+    type(*viewer, letter('K'));
+    EXPECT_EQ(viewer->editor(), nullptr);
+    settle(*viewer);
+    const double share = differing(viewer->engine().targets().readSrgb(), marked);
+    EXPECT_GT(share, 1e-4);
+    EXPECT_LT(share, 0.02);
+    // What was edited last is what L replays, and what the editor opens again.
+    type(*viewer, letter('K'));
+    EXPECT_EQ(viewer->editor()->flight().keys, saved.keys);
+}
+
+TEST_F(ViewerTest, EditsWhatWasRecordedAndSaysWhyItCannot) {
+    const auto viewer = open();
+    settle(*viewer);
+    type(*viewer, letter('R'));
+    hold(*viewer, letter('W'), 0.5);
+    type(*viewer, letter('R'));
+    const std::filesystem::path recorded = written(".json");
+    type(*viewer, letter('K'));
+    EXPECT_EQ(viewer->editor()->flight(), loadFlight(recorded));
+    type(*viewer, Key::insert);  // between two pictures
+    EXPECT_TRUE(viewer->editor()->changed());
+    type(*viewer, letter('K'));
+    EXPECT_EQ(viewer->editor(), nullptr);
+    type(*viewer, Key::insert);  // is nobody's
+    type(*viewer, letter('K'));
+    for (size_t n = viewer->editor()->flight().keys.size(); n > 1; --n) type(*viewer, Key::remove);
+    type(*viewer, Key::remove);
+    EXPECT_EQ(viewer->notice(), "the only key of a flight cannot be deleted");
+    EXPECT_TRUE(std::filesystem::exists(recorded));
 }
 
 TEST_F(ViewerTest, RecallsBookmarksAlsoOfAnEarlierRun) {
