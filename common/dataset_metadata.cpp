@@ -52,10 +52,11 @@ class FieldReader {
         values.resize(size == 0 ? values.size() : size);
         return values;
     }
-    Json::Array array(const std::string& name) {
+    const Json::Array& array(const std::string& name) {
+        static const Json::Array kNone;
         const Json* found = object_->find(name);
         require(found != nullptr && found->isArray(), name, "an array");
-        return found != nullptr && found->isArray() ? found->array() : Json::Array{};
+        return found != nullptr && found->isArray() ? found->array() : kNone;
     }
     /// West, south, east, north, or null.
     std::optional<GroundRect> rect(const std::string& name) {
@@ -80,7 +81,7 @@ class FieldReader {
     /// Reads the members of each object in an array.
     template <class Read>
     void forEach(const std::string& name, Read read) {
-        const Json::Array items = array(name);
+        const Json::Array& items = array(name);
         for (size_t i = 0; i < items.size(); ++i)
             descend(items[i], path_ + name + "[" + std::to_string(i) + "].", read);
     }

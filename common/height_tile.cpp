@@ -178,6 +178,7 @@ Result<HeightTile> decodeHeightTile(ByteView payload, std::optional<TileId> expe
     const std::string name = "height tile " + toString(tile.id);
 
     thread_local Bytes planes;  // kept, since clearing half a megabyte for each tile would cost as much as decoding it
+    planes.reserve(heightPlaneBytes(kSize, true));  // once: growing would take room for two
     planes.resize(heightPlaneBytes(kSize, tile.record.hasHoles));
     if (!zstdDecompress(opened->body, planes)) return Failure{name + ": its codes do not unpack to their size"};
     tile.codes = codesFromPlanes(planes, tile.record.hasHoles, kSize);

@@ -61,7 +61,8 @@ class Json {
     void push(Json value);
 
     /// Parses a whole text. Refuses: anything after the value, duplicate names, depth over 64, invalid UTF-8, lone
-    /// surrogates, numbers out of a double's range. The message says line and column.
+    /// surrogates, numbers out of a double's range. The message says line and column. Allocates at most 64 bytes for
+    /// each of the text: "0," becomes a value of 40 bytes in an array that grows by doubling.
     [[nodiscard]] static Result<Json> parse(std::string_view text);
     /// Text of this value; doubles in the shortest form that reads back exactly; NaN and infinities become null.
     /// @param indent  spaces per level, 0 for one line

@@ -71,6 +71,7 @@ FOREIGN = {
     "Dear ImGui": (r"(backends/)?imgui\w*\.h", {"client/view": MANY}),
     "GoogleTest": (r"(gtest|gmock)/.*", {}),
     "Embree": (r"embree3/.*", {}),
+    "the C library's allocator": (r"malloc\.h", {}),
     "AVX2 intrinsics": (r"immintrin\.h", {}),
 }
 

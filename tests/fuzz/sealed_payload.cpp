@@ -1,0 +1,28 @@
+#include "tests/fuzz/sealed_payload.h"
+
+#include <algorithm>
+
+namespace terray::fuzz {
+
+std::optional<Bytes> sealedPayload(ByteView payload, size_t fieldBytes) {
+    const size_t unsealed = kPayloadPrefixBytes + fieldBytes;
+    if (payload.size() < unsealed + kPayloadSealBytes) return {};
+    ByteWriter out;
+    out.writeBytes(payload.first(unsealed));
+    sealPayload(out, payload.subspan(unsealed + kPayloadSealBytes));
+    return out.release();
+}
+
+Bytes repeated(ByteView pattern, size_t count) {
+    Bytes bytes(count);
+    for (size_t done = 0; done < count; done += pattern.size())
+        std::ranges::copy(pattern.first(std::min(pattern.size(), count - done)),
+                          bytes.begin() + static_cast<ptrdiff_t>(done));
+    return bytes;
+}
+
+bool beginsWith(ByteView bytes, std::string_view text) {
+    return bytes.size() >= text.size() && std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)));
+}
+
+}  // namespace terray::fuzz
