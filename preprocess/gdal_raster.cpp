@@ -324,7 +324,9 @@ VirtualRaster translate(const std::string& source, const std::vector<std::string
 void describeAnew(const VirtualRaster& target, const std::string& source, const std::vector<std::string>& options) {
     const Messages messages;
     const GDALDatasetUniquePtr input = openSource(source, messages);
-    GDALTranslateOptions* parsed = GDALTranslateOptionsNew(argumentsOf(options, "VRT").List(), nullptr);
+    CPLStringList arguments(argumentsOf(options, "VRT"));
+    arguments.AddString("-noxmp");  // looking for it walks through half of a PNG
+    GDALTranslateOptions* parsed = GDALTranslateOptionsNew(arguments.List(), nullptr);
     GDALDatasetH made = GDALTranslate(target.name().c_str(), GDALDataset::ToHandle(input.get()), parsed, nullptr);
     GDALTranslateOptionsFree(parsed);
     finish(made, "\"" + source + "\"", messages);
