@@ -181,22 +181,10 @@ Awaitable<void> Connection::send(const Response& response, std::string head, Til
 }
 
 size_t Connection::sendAtOnce(std::string_view head, const KeptTile& tile) {
-    const int socket = socket_.native_handle();
-    const auto sendNext = [&](size_t done) {
-        const iovec piece = pieceOf(head.substr(std::min(done, head.size())));
-        if (piece.iov_len > 0) return sendSome(socket, {&piece, 1}, true);
-        const size_t ofTile = done - head.size();
-        return sendFileSome(socket, tile.descriptor(), tile.offset() + ofTile, tile.size() - ofTile);
-    };
-    size_t done = 0;
-    while (done < head.size() + tile.size()) {
-        const IoStep step = sendNext(done);
-        if (step.outcome == Outcome::ended) failed_ = true;
-        if (step.outcome != Outcome::progressed) break;
-        done += step.bytes;
-    }
-    sent_ = paced_ = done;
-    return done;
+    const IoStep step = worker_.pageSender().send(socket_.native_handle(), head, tile.bytes());
+    if (step.outcome == Outcome::ended) failed_ = true;
+    sent_ = paced_ = step.bytes;
+    return step.bytes;
 }
 
 Awaitable<void> Connection::sendPieces(std::span<iovec> pieces, bool moreFollows) {

@@ -24,7 +24,7 @@ struct ServerOptions {
     int logDescriptor = 1;
 };
 
-/// Serves datasets over HTTP/1.1 on threads of its own. The program has to ignore SIGPIPE: sendfile raises it when a
+/// Serves datasets over HTTP/1.1 on threads of its own. The program has to ignore SIGPIPE: sendfile and splice raise it when a
 /// client has gone.
 ///
 /// With all connections taken, a new one takes the place of the one that has been idle longest; only if none is idle is

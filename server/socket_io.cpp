@@ -2,6 +2,7 @@
 
 #include <cerrno>
 
+#include <fcntl.h>
 #include <sys/sendfile.h>
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -41,6 +42,11 @@ IoStep sendFileSome(int socket, int file, uint64_t offset, size_t length) {
         off_t position = static_cast<off_t>(offset);
         return ::sendfile(socket, file, &position, length);
     });
+}
+
+IoStep spliceSome(int pipe, int target, size_t length, bool moreFollows) {
+    const unsigned flags = SPLICE_F_NONBLOCK | (moreFollows ? SPLICE_F_MORE : 0);
+    return step([&] { return ::splice(pipe, nullptr, target, nullptr, length, flags); });
 }
 
 }  // namespace terray::server

@@ -12,7 +12,7 @@ namespace terray::server {
 struct IoStep {
     enum class Outcome { progressed, wouldBlock, ended };  ///< ended: the peer is gone, or an error
     Outcome outcome = Outcome::ended;
-    size_t bytes = 0;  ///< when progressed
+    size_t bytes = 0;  ///< when progressed; calls that take several steps say how far they came
 };
 
 /// Reads what is there, up to the buffer's size.
@@ -22,5 +22,7 @@ struct IoStep {
 [[nodiscard]] IoStep sendSome(int socket, std::span<const iovec> pieces, bool moreFollows);
 /// Sends bytes of a file without copying them into the program. A file that became shorter counts as ended.
 [[nodiscard]] IoStep sendFileSome(int socket, int file, uint64_t offset, size_t length);
+/// Moves what a pipe holds to a socket or file. A pipe that is empty counts as wouldBlock.
+[[nodiscard]] IoStep spliceSome(int pipe, int target, size_t length, bool moreFollows);
 
 }  // namespace terray::server

@@ -1,64 +1,60 @@
 #include "server/tile_memory.h"
 
-#include <cerrno>
-#include <cstring>
-#include <string>
+#include <algorithm>
 #include <utility>
 
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "common/error.h"
-
 namespace terray::server {
 namespace {
+
+/// Small, since a block stays mapped (8 KiB of page tables) for as long as one of its tiles is kept.
+constexpr size_t kBlockBytes = size_t{4} << 20;
 
 uint64_t pageBytes() {
     static const auto bytes = static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
     return bytes;
 }
 
-bool writeAll(int descriptor, ByteView bytes, uint64_t offset) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        bytes = bytes.subspan(static_cast<size_t>(written));
-        offset += static_cast<uint64_t>(written);
-    }
-    return true;
-}
-
 }  // namespace
 
-TileMemory::TileMemory() : descriptor_(::memfd_create("terray tiles", MFD_CLOEXEC)) {
-    if (descriptor_ < 0)
-        throw Error(ExitCode::internal, std::string("cannot make the cache of tiles: memfd_create: ") +
-                                            std::strerror(errno) + "; start without it (--cache 0)");
+std::shared_ptr<PageBlock> PageBlock::make(size_t size) {
+    void* const start =
+        ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (start == MAP_FAILED) return nullptr;
+    ::madvise(start, size, MADV_NOHUGEPAGE);
+    return std::shared_ptr<PageBlock>(new PageBlock({static_cast<std::byte*>(start), size}));
 }
 
-TileMemory::~TileMemory() {
-    ::close(descriptor_);
+PageBlock::~PageBlock() {
+    ::munmap(bytes_.data(), bytes_.size());
+}
+
+KeptTile::KeptTile(std::shared_ptr<PageBlock> block, std::span<std::byte> bytes)
+    : block_(std::move(block)), bytes_(bytes) {}
+
+KeptTile::~KeptTile() {
+    ::madvise(bytes_.data(), TileMemory::roomFor(bytes_.size()), MADV_DONTNEED);
 }
 
 uint64_t TileMemory::roomFor(uint64_t size) {
     return (size + pageBytes() - 1) / pageBytes() * pageBytes();
 }
 
-std::shared_ptr<const KeptTile> TileMemory::keep(const std::shared_ptr<TileMemory>& memory, ByteView tile) {
-    const uint64_t offset = memory->end_.fetch_add(roomFor(tile.size()), std::memory_order_relaxed);
-    auto kept = std::make_shared<const KeptTile>(memory, offset, tile.size());
-    return writeAll(memory->descriptor_, tile, offset) ? kept : nullptr;
-}
-
-KeptTile::KeptTile(std::shared_ptr<TileMemory> memory, uint64_t offset, size_t size)
-    : memory_(std::move(memory)), offset_(offset), size_(size) {}
-
-KeptTile::~KeptTile() {
-    // Pages that are on their way to a client are referred to by its socket, and outlive this.
-    ::fallocate(memory_->descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset_),
-                static_cast<off_t>(TileMemory::roomFor(size_)));
+std::shared_ptr<const KeptTile> TileMemory::keep(ByteView tile) {
+    const size_t room = roomFor(tile.size());
+    std::unique_lock lock(mutex_);
+    if (block_ == nullptr || room > block_->bytes().size() - used_) {
+        block_ = PageBlock::make(std::max(room, kBlockBytes));
+        used_ = 0;
+    }
+    if (block_ == nullptr) return nullptr;
+    const auto place = block_->bytes().subspan(std::exchange(used_, used_ + room), tile.size());
+    auto kept = std::make_shared<const KeptTile>(block_, place);
+    lock.unlock();
+    std::ranges::copy(tile, place.begin());
+    return kept;
 }
 
 }  // namespace terray::server

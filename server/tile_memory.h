@@ -1,53 +1,62 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <span>
 
 #include "common/bytes.h"
 
 namespace terray::server {
 
-class KeptTile;
-
-/// Bytes of tiles in memory, as a file that has no name and lies on no disk, so that sendfile can send them without
-/// copying. Thread-safe. The system counts it as shared memory.
-class TileMemory {
+/// Pages of the process's own, of the small size: where large ones are sent, both ends of a connection fight over the
+/// one counter of their users.
+class PageBlock {
   public:
-    /// Throws Error(internal) when the system has no such files.
-    TileMemory();
-    ~TileMemory();
-    TileMemory(const TileMemory&) = delete;
-    TileMemory& operator=(const TileMemory&) = delete;
+    /// Takes no memory until pages are written. @return null: the system gives no more
+    [[nodiscard]] static std::shared_ptr<PageBlock> make(size_t size);
+    ~PageBlock();
+    PageBlock(const PageBlock&) = delete;
+    PageBlock& operator=(const PageBlock&) = delete;
 
-    /// Bytes of memory that so many bytes of a tile take: whole pages.
-    [[nodiscard]] static uint64_t roomFor(uint64_t size);
-    /// Copies a tile into memory. @return null: there is none left
-    [[nodiscard]] static std::shared_ptr<const KeptTile> keep(const std::shared_ptr<TileMemory>& memory, ByteView tile);
+    [[nodiscard]] std::span<std::byte> bytes() const { return bytes_; }
 
   private:
-    friend class KeptTile;
-    int descriptor_;
-    std::atomic<uint64_t> end_ = 0;  ///< only grows: places are never used again, their pages are given back
+    explicit PageBlock(std::span<std::byte> bytes) : bytes_(bytes) {}
+    std::span<std::byte> bytes_;
 };
 
-/// A tile in memory, for as long as someone holds it. Bytes that the kernel was given to send stay, too.
+/// A tile in memory, for as long as someone holds it. Its pages can be sent without copying (PageSender): those that
+/// are on their way when it goes belong to the socket then, and nobody writes to them.
 class KeptTile {
   public:
-    KeptTile(std::shared_ptr<TileMemory> memory, uint64_t offset, size_t size);
+    /// @param bytes  begin with a page of the block, and have their last page for themselves
+    KeptTile(std::shared_ptr<PageBlock> block, std::span<std::byte> bytes);
+    /// Gives the memory back.
     ~KeptTile();
     KeptTile(const KeptTile&) = delete;
     KeptTile& operator=(const KeptTile&) = delete;
 
-    /// For sendfile.
-    [[nodiscard]] int descriptor() const { return memory_->descriptor_; }
-    [[nodiscard]] uint64_t offset() const { return offset_; }
-    [[nodiscard]] size_t size() const { return size_; }
+    [[nodiscard]] ByteView bytes() const { return bytes_; }
+    [[nodiscard]] size_t size() const { return bytes_.size(); }
 
   private:
-    std::shared_ptr<TileMemory> memory_;
-    uint64_t offset_;
-    size_t size_;
+    std::shared_ptr<PageBlock> block_;
+    std::span<std::byte> bytes_;
+};
+
+/// Where tiles are kept: one after the other in blocks of pages, a place never being used twice. Thread-safe.
+class TileMemory {
+  public:
+    /// Bytes of memory that so many bytes of a tile take: whole pages.
+    [[nodiscard]] static uint64_t roomFor(uint64_t size);
+    /// Copies a tile into memory. @return null: there is none left
+    [[nodiscard]] std::shared_ptr<const KeptTile> keep(ByteView tile);
+
+  private:
+    std::mutex mutex_;
+    std::shared_ptr<PageBlock> block_;  ///< that is being filled
+    size_t used_ = 0;                   ///< of it
 };
 
 }  // namespace terray::server

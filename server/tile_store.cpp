@@ -96,9 +96,9 @@ void TileStore::runReader() {
     }
 }
 
-TileBytes TileStore::readBytes(const StoredTile& tile) const {
+TileBytes TileStore::readBytes(const StoredTile& tile) {
     const auto bytes = tile.archive->reader().source().read(tile.range.offset, tile.range.length);
-    return bytes ? TileMemory::keep(memory_, *bytes) : nullptr;
+    return bytes ? memory_.keep(*bytes) : nullptr;
 }
 
 void TileStore::readTile(const Key& key, std::unique_lock<std::mutex>& lock) {

@@ -80,7 +80,7 @@ class TileStore {
     [[nodiscard]] static Key keyOf(const StoredTile& tile) { return {tile.archive->serial(), tile.id}; }
     [[nodiscard]] Entries& entriesOf(const Entry& entry) { return entry.wasAsked ? asked_ : ahead_; }
     // All below: the lock is held, except in runReader(), readTile() and readBytes().
-    [[nodiscard]] TileBytes readBytes(const StoredTile& tile) const;
+    [[nodiscard]] TileBytes readBytes(const StoredTile& tile);
     [[nodiscard]] TileBytes use(const StoredTile& tile);
     void keep(const Key& key, TileBytes bytes, bool wasAsked);
     void evict();
@@ -92,7 +92,7 @@ class TileStore {
 
     TileStoreOptions options_;
     Metrics& metrics_;
-    std::shared_ptr<TileMemory> memory_ = std::make_shared<TileMemory>();
+    TileMemory memory_;
     std::mutex mutex_;
     std::condition_variable wake_;
     bool stops_ = false;

@@ -23,6 +23,7 @@
 #include "server/access_log.h"
 #include "server/catalogue.h"
 #include "server/metrics.h"
+#include "server/page_sender.h"
 #include "server/request_reader.h"
 #include "server/tile_store.h"
 
@@ -86,6 +87,7 @@ class Worker {
     [[nodiscard]] std::string_view date();
     /// Room for one read; what is in it lasts until the connection waits.
     [[nodiscard]] std::span<char> scratch() { return scratch_; }
+    [[nodiscard]] PageSender& pageSender() { return pageSender_; }
     using IdleList = std::list<Connection*>;
     [[nodiscard]] IdleList& idle() { return idle_; }  ///< longest idle first
     void forget(Connection& connection);
@@ -111,6 +113,7 @@ class Worker {
     int64_t dateSecond_ = -1;
     std::string date_;
     std::array<char, 16384> scratch_{};
+    PageSender pageSender_;
     std::thread thread_;
 };
 
