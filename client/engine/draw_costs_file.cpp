@@ -15,7 +15,7 @@ namespace terray {
 namespace {
 
 constexpr const char* kFormat = "terray-draw-costs";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 struct NamedCost {
     const char* name;
@@ -24,7 +24,8 @@ struct NamedCost {
 constexpr NamedCost kCosts[] = {
     {"cast_node_ms", &DrawCosts::castNode},   {"cast_pixel_ms", &DrawCosts::castPixel},
     {"cast_step_ms", &DrawCosts::castStep},   {"mesh_node_ms", &DrawCosts::meshNode},
-    {"mesh_pixel_ms", &DrawCosts::meshPixel}, {"mesh_triangle_ms", &DrawCosts::meshTriangle}};
+    {"mesh_pixel_ms", &DrawCosts::meshPixel}, {"mesh_triangle_ms", &DrawCosts::meshTriangle},
+    {"mesh_make_ms", &DrawCosts::meshMake}};
 
 std::string currentGraphics() {
     std::string text;

@@ -11,6 +11,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "client/render/node_parameters.h"
+#include "client/render/terrain_mesh.h"
 #include "client/render/terrain_renderer.h"
 #include "common/height_tile.h"
 
@@ -64,7 +65,8 @@ class Scene {
           tiles_(shaders, {.heightTiles = 1, .method = {.method = method_, .tiling = tiling_}}),
           renderer_(shaders, tiling_),
           targets_(kSide, kSide, {}),
-          node_{.minHeight = tile.record.minHeight, .maxHeight = tile.record.maxHeight} {
+          node_{.minHeight = tile.record.minHeight, .maxHeight = tile.record.maxHeight},
+          makeMs_(millisecondsToMake(tile, meshError)) {
         TERRAY_CHECK(tiles_.uploadHeights(tile).done);
     }
 
@@ -75,10 +77,21 @@ class Scene {
         return {.work = workOf(node, view, tiles_.methodTiles()->triangles(node)),
                 .castMs = castMs ? *castMs : milliseconds(view, {}, 1),
                 .meshMs = milliseconds(view, method_, 1),
-                .emptyMs = milliseconds(view, {}, 0)};
+                .emptyMs = milliseconds(view, {}, 0),
+                .makeMs = makeMs_};
     }
 
   private:
+    static double millisecondsToMake(const HeightTile& tile, double meshError) {
+        // As MeshTiles allows a finest tile, which has no error of its own.
+        const MeshTolerance tolerance{.codes = meshError * kSpacing / 4 / tile.encoding.metresPerCode()};
+        const auto start = std::chrono::steady_clock::now();
+        const size_t triangles = triangulated(tile.codes, tolerance).triangles();
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+        TERRAY_CHECK_OP(triangles, >, 0u);
+        return took.count();
+    }
+
     /// Wall clock around glFinish, which also counts what the driver does on the CPU.
     double milliseconds(const View& view, const MethodOptions& method, size_t nodes) {
         RenderOptions options;
@@ -102,6 +115,7 @@ class Scene {
     TerrainRenderer renderer_;
     FrameTargets targets_;
     DrawNode node_;
+    double makeMs_;
 };
 
 }  // namespace

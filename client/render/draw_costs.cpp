@@ -82,14 +82,17 @@ glm::dvec3 fitted(std::span<const Equation> equations) {
 
 }  // namespace
 
-NodeWork workOf(const interop::NodeParameters& node, const View& view, uint64_t triangles) {
-    return {
-        .pixels = coveredPixels(node, view), .steps = expectedSteps(node), .triangles = static_cast<double>(triangles)};
+NodeWork workOf(const interop::NodeParameters& node, const View& view, uint64_t triangles, bool isMade) {
+    return {.pixels = coveredPixels(node, view),
+            .steps = expectedSteps(node),
+            .triangles = static_cast<double>(triangles),
+            .isMade = isMade};
 }
 
 DrawCosts fittedCosts(std::span<const CostSample> samples) {
     TERRAY_CHECK(!samples.empty());
     std::vector<Equation> cast, mesh;
+    double makeMs = 0;
     for (const CostSample& sample : samples) {
         const NodeWork& work = sample.work;
         const auto equation = [&](const glm::dvec3& features, double milliseconds) {
@@ -97,6 +100,7 @@ DrawCosts fittedCosts(std::span<const CostSample> samples) {
         };
         cast.push_back(equation({1, work.pixels, work.pixels * work.steps}, sample.castMs));
         mesh.push_back(equation({1, work.pixels, work.triangles}, sample.meshMs));
+        makeMs += sample.makeMs;
     }
     const glm::dvec3 rays = fitted(cast), triangles = fitted(mesh);
     return {.castNode = rays.x,
@@ -104,7 +108,8 @@ DrawCosts fittedCosts(std::span<const CostSample> samples) {
             .castStep = rays.z,
             .meshNode = triangles.x,
             .meshPixel = triangles.y,
-            .meshTriangle = triangles.z};
+            .meshTriangle = triangles.z,
+            .meshMake = makeMs / static_cast<double>(samples.size())};
 }
 
 std::vector<uint8_t> HybridChoice::choose(std::span<const DrawNode> nodes, std::span<const NodeWork> work,
@@ -112,15 +117,22 @@ std::vector<uint8_t> HybridChoice::choose(std::span<const DrawNode> nodes, std::
     TERRAY_CHECK_OP(nodes.size(), ==, work.size());
     std::vector<uint8_t> choice(nodes.size());
     std::unordered_map<TileId, bool> chosen;
+    std::unordered_map<TileId, double> missed;
     for (size_t n = 0; n < nodes.size(); ++n) {
         const double cast = costs.castMs(work[n]), mesh = costs.meshMs(work[n]);
         const auto found = rasterised_.find(nodes[n].cell);
         const bool before = found != rasterised_.end() && found->second;
-        const bool rasterised = before ? !(cast < kWorthAChange * mesh) : mesh < kWorthAChange * cast;
+        bool rasterised = before ? !(cast < kWorthAChange * mesh) : mesh < kWorthAChange * cast;
+        if (!work[n].isMade) {
+            double& sum = missed.try_emplace(nodes[n].heightTile, missed_[nodes[n].heightTile]).first->second;
+            if (rasterised) sum += cast - mesh;
+            rasterised = rasterised && sum >= costs.meshMake;
+        }
         choice[n] = rasterised ? 1 : 0;
         chosen.emplace(nodes[n].cell, rasterised);
     }
     rasterised_ = std::move(chosen);
+    missed_ = std::move(missed);
     return choice;
 }
 

@@ -103,6 +103,10 @@ uint64_t MeshTiles::triangles(const interop::NodeParameters& node) const {
     return static_cast<uint64_t>(mesh.estimate * static_cast<double>(blocks) / TerrainMesh::kBlocks);
 }
 
+bool MeshTiles::isMade(const interop::NodeParameters& node) const {
+    return static_cast<bool>(meshes_.at(node.source.x).indices);
+}
+
 double MeshTiles::bytesPerTriangle() const {
     uint64_t all = 0;
     for (const Mesh& mesh : meshes_) all += mesh.starts.back() / 3;

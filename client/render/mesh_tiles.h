@@ -17,6 +17,7 @@ class MeshTiles final : public MethodTiles {
     void build(const PreparedTile& tile) override;
     void draw(const interop::NodeParameters& node) const override;
     [[nodiscard]] uint64_t triangles(const interop::NodeParameters& node) const override;
+    [[nodiscard]] bool isMade(const interop::NodeParameters& node) const override;
     [[nodiscard]] float slack(uint32_t slot) const override;
     [[nodiscard]] uint64_t takeTriangles() const override { return std::exchange(drawn_, 0); }
     [[nodiscard]] uint64_t bytes() const override { return bytes_; }

@@ -42,6 +42,8 @@ class MethodTiles {
     virtual void draw(const interop::NodeParameters&) const {}
     /// How many draw() draws of a node, or about as many.
     [[nodiscard]] virtual uint64_t triangles(const interop::NodeParameters&) const { return 0; }
+    /// Whether draw() has no geometry to make first.
+    [[nodiscard]] virtual bool isMade(const interop::NodeParameters&) const { return true; }
     /// That draw() has drawn since it was asked last.
     [[nodiscard]] virtual uint64_t takeTriangles() const { return 0; }
     /// How far a slot's geometry may lie from the ground, codes.

@@ -157,8 +157,9 @@ void TerrainRenderer::chooseRasterised(const View& view, std::span<const DrawNod
     if (options.method.method != Method::hybrid) return;
     TERRAY_CHECK(options.drawCosts.has_value());
     std::vector<NodeWork> work;
-    for (size_t n = 0; n < nodes.size(); ++n)
-        work.push_back(workOf(nodes_[n], view, tiles.methodTiles()->triangles(nodes_[n])));
+    const MethodTiles& meshes = *tiles.methodTiles();
+    for (const interop::NodeParameters& node : nodes_)
+        work.push_back(workOf(node, view, meshes.triangles(node), meshes.isMade(node)));
     rasterised_ = choice_.choose(nodes, work, *options.drawCosts);
 }
 

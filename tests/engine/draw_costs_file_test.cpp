@@ -45,7 +45,7 @@ TEST_F(DrawCostsFile, IsWrittenOnceAndReadFromThenOn) {
 }
 
 TEST_F(DrawCostsFile, IsRefusedWhenItIsSomethingElse) {
-    for (const char* text : {"", "{", "{}", R"({"format":"terray-draw-costs","version":2})"}) {
+    for (const char* text : {"", "{", "{}", R"({"format":"terray-draw-costs","version":3})"}) {
         write(text);
         try {
             (void)settledDrawCosts(file_, shaders_);

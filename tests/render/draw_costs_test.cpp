@@ -62,12 +62,17 @@ TEST(DrawCosts, AreFoundAgainFromTimesThatFollowThem) {
             for (const double triangles : {100.0, 5'000.0, 300'000.0}) {
                 const NodeWork work{.pixels = pixels, .steps = steps, .triangles = triangles};
                 constexpr double kEmpty = 3;  // of every frame
-                samples.push_back({work, kEmpty + truth.castMs(work), kEmpty + truth.meshMs(work), kEmpty});
+                samples.push_back({.work = work,
+                                   .castMs = kEmpty + truth.castMs(work),
+                                   .meshMs = kEmpty + truth.meshMs(work),
+                                   .emptyMs = kEmpty,
+                                   .makeMs = triangles < 1'000 ? 10.0 : 25.0});
             }
     const DrawCosts found = fittedCosts(samples);
     for (double DrawCosts::*cost : {&DrawCosts::castNode, &DrawCosts::castPixel, &DrawCosts::castStep,
                                     &DrawCosts::meshNode, &DrawCosts::meshPixel, &DrawCosts::meshTriangle})
         EXPECT_NEAR(found.*cost, truth.*cost, 1e-6 * truth.*cost);
+    EXPECT_DOUBLE_EQ(found.meshMake, 20) << "the mean of 10, 25 and 25";
     // Times that fall with the steps are no reason for a step to cost less than nothing.
     for (CostSample& sample : samples) sample.castMs = 1 + 1e-5 * sample.work.pixels * (30 - sample.work.steps);
     const DrawCosts odd = fittedCosts(samples);
@@ -95,6 +100,29 @@ TEST(HybridChoice, TakesTheCheaperWayAndStaysWithItUntilTheOtherIsMuchCheaper) {
     // A cell that was not drawn in between begins anew.
     EXPECT_TRUE(choice.choose({}, {}, costs).empty());
     EXPECT_FALSE(choose(100, 90));
+}
+
+TEST(HybridChoice, MakesATilesTrianglesOnceTheyWouldHaveSavedTheirOwnTime) {
+    const DrawCosts costs{.castPixel = 1, .meshTriangle = 1, .meshMake = 100};
+    HybridChoice choice;
+    // Two cells of one tile; together they save 20 + 10 a frame.
+    const std::vector<DrawNode> nodes{{.cell = {2, 0, 0}, .heightTile = {1, 0, 0}},
+                                      {.cell = {2, 1, 0}, .heightTile = {1, 0, 0}}};
+    std::vector<NodeWork> work{{.pixels = 40, .triangles = 20, .isMade = false},
+                               {.pixels = 30, .triangles = 20, .isMade = false}};
+    for (int frame = 0; frame < 3; ++frame)
+        EXPECT_EQ(choice.choose(nodes, work, costs), (std::vector<uint8_t>{0, 0})) << frame;
+    EXPECT_EQ(choice.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1})) << "after 3 x 30 and 20 ms";
+    for (NodeWork& node : work) node.isMade = true;
+    EXPECT_EQ(choice.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1}));
+    // A tile that is there costs nothing to begin with; one that was not drawn for a frame begins anew.
+    HybridChoice other;
+    EXPECT_EQ(other.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1}));
+    for (NodeWork& node : work) node.isMade = false;
+    HybridChoice forgetful;
+    for (int frame = 0; frame < 3; ++frame) (void)forgetful.choose(nodes, work, costs);
+    (void)forgetful.choose({}, {}, costs);
+    EXPECT_EQ(forgetful.choose(nodes, work, costs), (std::vector<uint8_t>{0, 0}));
 }
 
 }  // namespace

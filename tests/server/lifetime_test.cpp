@@ -67,26 +67,29 @@ TEST(Connections, TakeThePlaceOfTheLongestIdle) {
 
 TEST(Connections, AreRefusedWith503WhenNoneIsIdle) {
     RunningServer running({.maxConnections = 3});
+    // A connection is busy once the server has read the beginning of a request; until then a newer one may take its
+    // place. So each one that comes in stays, with a request begun, until one is refused.
     std::vector<RawClient> busy;
-    for (int i = 0; i < 3; ++i) {
-        busy.push_back(running.client());
-        busy.back().send("GET /health HT");  // no idle ones: a request has begun
-    }
-    // The requests' beginnings and the fourth connection reach the server by different ways: ask until all are there.
     int status = 200;
     while (status == 200) {
-        RawClient fourth = running.client();
-        fourth.send(kHealth);
-        const auto answer = fourth.answer();
+        RawClient next = running.client();
+        next.send(kHealth);
+        const auto answer = next.answer();
         status = answer ? answer->status : 0;
         if (status == 503) {
             EXPECT_EQ("1", answer->field("retry-after"));
         }
+        next.send("GET /health HT");
+        if (status == 200) busy.push_back(std::move(next));
     }
     EXPECT_EQ(503, status);
-    busy.pop_back();
-    for (RawClient& client : busy) client.send("TP/1.1\r\nHost: x\r\n\r\n");
-    for (RawClient& client : busy) EXPECT_EQ(200, client.answer()->status) << "those that are in stay in";
+    int answered = 0;
+    for (RawClient& client : busy) {
+        client.send("TP/1.1\r\nHost: x\r\n\r\n");
+        const auto answer = client.answer();
+        if (answer && answer->status == 200) ++answered;
+    }
+    EXPECT_EQ(answered, 3) << "those that are in stay in";
 }
 
 TEST(Reload, ShowsToRequestsThatFollow) {
