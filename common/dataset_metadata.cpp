@@ -6,6 +6,8 @@
 namespace terray {
 namespace {
 
+constexpr const char* kEverywhere = "everywhere";
+constexpr const char* kAtSamples = "at samples";
 constexpr double kExactIntegers = 9007199254740992.0;  // 2^53: JSON numbers are doubles
 
 Json toJson(const std::optional<GroundRect>& rect) {
@@ -134,6 +136,10 @@ void readHeights(FieldReader& in, DatasetMetadata& metadata) {
     metadata.heightTiles = in.count("tiles");
     metadata.levelErrors = in.numbers("levelErrors", metadata.tiling.finestLevel + 1);
     for (const double error : metadata.levelErrors) in.require(error >= 0, "levelErrors", "without negative numbers");
+    const std::string errorsHold = in.has("errorsHold") ? in.string("errorsHold") : kAtSamples;
+    metadata.errorsHoldEverywhere = errorsHold == kEverywhere;
+    in.require(metadata.errorsHoldEverywhere || errorsHold == kAtSamples, "errorsHold",
+               "\"everywhere\" or \"at samples\"");
     metadata.errorBound = in.has("errorBound") ? in.number("errorBound") : metadata.levelErrors.back();
     in.require(metadata.errorBound >= 0, "errorBound", "no less than 0");
 }
@@ -170,6 +176,7 @@ Json toJson(const DatasetMetadata& metadata) {
     heights.set("holeSamples", metadata.holeSamples);
     heights.set("tiles", metadata.heightTiles);
     heights.set("levelErrors", Json::Array(metadata.levelErrors.begin(), metadata.levelErrors.end()));
+    heights.set("errorsHold", metadata.errorsHoldEverywhere ? kEverywhere : kAtSamples);
     heights.set("errorBound", metadata.errorBound);
 
     Json imagery;

@@ -47,6 +47,9 @@ struct DatasetMetadata {
     uint64_t imageryTiles = 0;
     /// Measured greatest error of a tile of each level, level 0 first, metres: HeightRecord::error.
     std::vector<double> levelErrors;
+    /// Whether tiles' errors bound their surfaces over all of the ground, as HeightTile::record says. False: an older
+    /// build compared samples alone, and between them a bilinear surface may be off by more.
+    bool errorsHoldEverywhere = true;
     /// Metres, >= 0: no finest height lies farther from what the sources said than this, half the widest step of codes
     /// there. How far the farthest does lie is measured: the last of levelErrors.
     double errorBound = 0;

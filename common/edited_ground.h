@@ -51,6 +51,8 @@ class EditedGround {
     ///     |T(c, H) - T(p, h)| <= |T(c, H) - T(c, h)| + |T(c, h) - T(p, h)| <= e + variation,
     /// with editBounds' variation over that distance; half a step comes on top. At the finest level only that does. So
     /// a tile is refined until steps of a crater's wall are below the tolerance, or the finest samples are reached.
+    /// That is of samples, so of columns. Of bilinear surfaces e is counted, the edits between samples are not: a patch
+    /// spans an edit's slope over the spacing S in place of (S - s) / sqrt(2), so it may be off by some more.
     ///
     /// Bounds are taken from squares of the tile, halved until one edit is left, or all reach as far as the square is
     /// wide, or it has 16 samples a side, so that edits far from one another do not add up. That costs time in

@@ -101,9 +101,9 @@ GridRect grown(const GridRect& rect, int64_t margin) {
 }
 
 uint64_t heightBlockBytes(uint32_t depth) {
-    // The finest level holds means alone (4 bytes), each level above means, lowest and highest (12); levels sum to 4/3.
+    // The finest level holds means alone (4 bytes), those above four floats; levels above sum to 1/3 of the finest.
     const uint64_t side = uint64_t{kHeightTileSide} << depth;
-    return side * side * 4 + side * side * 4 + kTileBufferBytes;
+    return side * side * 4 + side * side * 16 / 3 + kTileBufferBytes;
 }
 
 uint64_t imageryBlockBytes(uint32_t depth) {

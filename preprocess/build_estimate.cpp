@@ -97,7 +97,7 @@ uint64_t tilesOf(const PyramidExtent& extent) {
 }
 
 BuildEstimate estimateBuild(const EstimateInput& input) {
-    constexpr uint64_t kHeightSampleBytes = 12;
+    constexpr uint64_t kHeightSampleBytes = 16;
     constexpr uint64_t kTexelBytes = 16;
     BuildEstimate estimate;
     estimate.jobs = input.work.jobs;

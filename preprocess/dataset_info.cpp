@@ -42,6 +42,8 @@ void printHeights(std::ostream& out, const DatasetInfo& info) {
         << metadata.holeSamples << " holes (datum " << metadata.verticalDatum << ")\n           off by at most "
         << readableNumber(metadata.levelErrors.back()) << " m, measured; bound " << readableNumber(metadata.errorBound)
         << " m\n";
+    if (!metadata.errorsHoldEverywhere)
+        out << "           errors below hold at samples, not between them: an older build measured them\n";
     out << "           " << info.heights.tiles() << " tiles, file " << readableBytes(info.heights.fileBytes)
         << ", compressed " << readableNumber(info.heightCompression()) << " times from 16 bits\n";
     for (size_t level = 0; level < info.heights.levels.size(); ++level)

@@ -10,6 +10,7 @@
 #include "common/parallel.h"
 #include "preprocess/height_samples.h"
 #include "preprocess/level_store.h"
+#include "preprocess/surface_deviation.h"
 
 namespace terray {
 namespace {
@@ -19,11 +20,13 @@ constexpr int64_t kBandRows = 64;
 
 /// The level between two stages: its samples and its tiles' records.
 struct StoredLevel {
+    static constexpr int kPlanes = 4;  ///< mean, lowest, highest, deviation
+
     LevelStore samples;
     Grid<HeightRecord> records;
 
     StoredLevel(const std::filesystem::path& path, GridSize tiles)
-        : samples(path, {0, 0, tiles.width, tiles.height}, 3, kNoHeight), records(tiles) {}
+        : samples(path, {0, 0, tiles.width, tiles.height}, kPlanes, kNoHeight), records(tiles) {}
 };
 
 /// A block in work.
@@ -39,6 +42,11 @@ struct Block {
     [[nodiscard]] HeightViews views(uint32_t above) const {
         if (above == 0) return {finest.view(), finest.view(), finest.view()};
         return levels[above - 1].views();
+    }
+    /// Where the block's own cells lie in these samples: those of all of its tiles.
+    [[nodiscard]] GridRect core(uint32_t above) const {
+        const int64_t margin = int64_t{kHeightApron} << (stage.depth - above);
+        return {margin, margin, kTileCore * tilesAcross(above), kTileCore * tilesAcross(above)};
     }
     [[nodiscard]] int64_t tilesAcross(uint32_t above) const { return int64_t{1} << (stage.depth - above); }
     [[nodiscard]] TileId tile(uint32_t above, int64_t column, int64_t row) const {
@@ -100,6 +108,7 @@ class HeightPyramid {
         record.levelErrors.resize(stage.depth + 1, 0);
         const bool hasSurface = stage.first ? readSource(block, worker) : readBelow(block);
         if (!hasSurface) return;
+        if (!stage.first) boundFirstDeviations(block);
         halveUpwards(block);
         for (uint32_t above = 0; above <= stage.depth; ++above) {
             block.records.emplace_back(GridSize{block.tilesAcross(above), block.tilesAcross(above)});
@@ -197,6 +206,41 @@ class HeightPyramid {
             HeightSamples coarse(GridSize{fine.mean.width() / 2, fine.mean.height() / 2});
             halveHeights(fine, coarse);
             block.levels.push_back(std::move(coarse));
+            boundTopDeviations(block, fine);
+        }
+    }
+
+    /// Of the level that was made last. @param fine  the one below it
+    static void boundTopDeviations(Block& block, const HeightViews& fine) {
+        const auto above = static_cast<uint32_t>(block.levels.size());
+        const GridRect core = block.core(above), fineCore = block.core(above - 1);
+        HeightSamples& coarse = block.levels.back();
+        const bool finest = fine.deviation.size().count() == 0;
+        boundDeviations({.coarse = coarse.views().window(grown(core, 1)),
+                         .fine = fine.mean.window(grown(fineCore, 2)),
+                         .fineDeviation = finest ? fine.deviation : fine.deviation.window(fineCore)},
+                        coarse.deviation.view().window(core));
+    }
+
+    /// The same for the level above the stored one, which is read in bands again: rows around each are needed now.
+    void boundFirstDeviations(Block& block) const {
+        const GridRect window = block.window(), core = block.core(1);
+        HeightSamples& coarse = block.levels.front();
+        Grid<float> fine(GridSize{2 * (core.width + 2), kBandRows + 4});
+        Grid<float> deviation(GridSize{2 * core.width, kBandRows});
+        for (int64_t row = 0; row < core.height; row += kBandRows / 2) {
+            const GridRect band = {core.x, core.y + row, core.width, kBandRows / 2};
+            const GridRect beneath = {window.x + 2 * band.x, window.y + 2 * band.y, 2 * band.width, 2 * band.height};
+            {
+                const StepTimer timer(context_.times, BuildStep::read);
+                below_->samples.read(grown(beneath, 2), 0, fine.view());
+                below_->samples.read(beneath, 3, deviation.view());
+            }
+            const StepTimer timer(context_.times, BuildStep::reduce);
+            boundDeviations({.coarse = coarse.views().window(grown(band, 1)),
+                             .fine = fine.view(),
+                             .fineDeviation = deviation.view()},
+                            coarse.deviation.view().window(band));
         }
     }
 
@@ -276,7 +320,8 @@ class HeightPyramid {
         const StepTimer timer(context_.times, BuildStep::write);
         const HeightViews core =
             block.views(block.stage.depth).window(coreInBlock(block.stage, block.stage.depth, kHeightApron, 0, 0));
-        above_->samples.write(block.record.top.x, block.record.top.y, std::array{core.mean, core.lowest, core.highest});
+        above_->samples.write(block.record.top.x, block.record.top.y,
+                              std::array{core.mean, core.lowest, core.highest, core.deviation});
     }
 
     /// Adds a finished block to the totals and to what the stage above may read.

@@ -24,22 +24,39 @@ float meanOfHeights(const std::array<float, 4>& cells) {
     return count == 0 ? kNoHeight : static_cast<float>(sum / count);
 }
 
-// fmin and fmax take the other argument when one is NaN: NaN only if all four are.
-float leastOf(const std::array<float, 4>& cells) {
-    return std::fmin(std::fmin(cells[0], cells[1]), std::fmin(cells[2], cells[3]));
-}
-float greatestOf(const std::array<float, 4>& cells) {
-    return std::fmax(std::fmax(cells[0], cells[1]), std::fmax(cells[2], cells[3]));
+/// Two rows of cells, to be halved.
+struct RowPair {
+    const float* upper;
+    const float* lower;
+
+    RowPair(GridView<const float> fine, int64_t coarseRow)
+        : upper(fine.row(2 * coarseRow).data()), lower(fine.row(2 * coarseRow + 1).data()) {}
+};
+
+/// In vector code where all four have a surface, which is almost everywhere.
+void halveMeans(GridView<const float> fine, GridView<float> coarse) {
+    for (int64_t y = 0; y < coarse.height(); ++y) {
+        const auto [upper, lower] = RowPair(fine, y);
+        const std::span<float> out = coarse.row(y);
+        const auto wide = [](float height) { return static_cast<double>(height); };
+        for (size_t x = 0; x < out.size(); ++x)
+            out[x] = static_cast<float>(
+                (wide(upper[2 * x]) + wide(upper[2 * x + 1]) + wide(lower[2 * x]) + wide(lower[2 * x + 1])) * 0.25);
+        for (size_t x = 0; x < out.size(); ++x)
+            if (!isHeight(out[x]))
+                out[x] = meanOfHeights({upper[2 * x], upper[2 * x + 1], lower[2 * x], lower[2 * x + 1]});
+    }
 }
 
-template <class Reduce>
-void halve(GridView<const float> fine, GridView<float> coarse, const Reduce& reduce) {
+/// @param better  the bound of one that stands and one that may be NaN, which it passes over
+template <class Better>
+void halveBounds(GridView<const float> fine, GridView<float> coarse, const Better& better) {
+    const auto boundOf = [&](float a, float b) { return isHeight(a) ? better(a, b) : b; };
     for (int64_t y = 0; y < coarse.height(); ++y) {
-        const std::span<const float> upper = fine.row(2 * y);
-        const std::span<const float> lower = fine.row(2 * y + 1);
+        const auto [upper, lower] = RowPair(fine, y);
         const std::span<float> out = coarse.row(y);
         for (size_t x = 0; x < out.size(); ++x)
-            out[x] = reduce({upper[2 * x], upper[2 * x + 1], lower[2 * x], lower[2 * x + 1]});
+            out[x] = boundOf(boundOf(upper[2 * x], upper[2 * x + 1]), boundOf(lower[2 * x], lower[2 * x + 1]));
     }
 }
 
@@ -80,8 +97,8 @@ Grid<uint16_t> quantised(GridView<const float> heights, const HeightEncoding& en
     return codes;
 }
 
-/// Greatest distance between a decoded core cell and any source sample beneath it, metres, rounded up.
-float measureError(const Grid<uint16_t>& codes, const HeightEncoding& encoding, const HeightViews& core) {
+/// Greatest distance between a decoded core cell and any source sample beneath it, metres.
+double measureColumns(const Grid<uint16_t>& codes, const HeightEncoding& encoding, const HeightViews& core) {
     double error = 0;
     const GridView<const uint16_t> coreCodes = codes.view().window({kHeightApron, kHeightApron, kTileCore, kTileCore});
     for (int64_t y = 0; y < kTileCore; ++y) {
@@ -95,7 +112,34 @@ float measureError(const Grid<uint16_t>& codes, const HeightEncoding& encoding, 
                 std::max({error, height - static_cast<double>(lowest[x]), static_cast<double>(highest[x]) - height});
         }
     }
-    return floatAtLeast(error);
+    return error;
+}
+
+/// Greatest distance between a cell and its code, over the core and the cells around it that its bilinear surface is
+/// made of, metres.
+double measureRounding(const Grid<uint16_t>& codes, const HeightEncoding& encoding, GridView<const float> mean) {
+    const GridRect cells = {kHeightApron - 1, kHeightApron - 1, kTileCore + 2, kTileCore + 2};
+    const GridView<const uint16_t> usedCodes = codes.view().window(cells);
+    const GridView<const float> heights = mean.window(cells);
+    double rounding = 0;
+    for (int64_t y = 0; y < usedCodes.height(); ++y) {
+        const std::span<const uint16_t> row = usedCodes.row(y);
+        const std::span<const float> height = heights.row(y);
+        for (size_t x = 0; x < row.size(); ++x)
+            if (row[x] != kNoSurface)
+                rounding = std::max(rounding, std::abs(encoding.height(row[x]) - static_cast<double>(height[x])));
+    }
+    return rounding;
+}
+
+/// See HeightTile::record. Metres, rounded up.
+float measureError(const HeightTile& tile, const HeightTileInput& input) {
+    const double rounding = measureRounding(tile.codes, tile.encoding, input.mean);
+    // A finest tile is off by its codes alone.
+    if (input.core.deviation.size().count() == 0) return floatAtLeast(rounding);
+    const Range deviations = rangeOf(input.core.deviation);
+    return floatAtLeast(std::max(measureColumns(tile.codes, tile.encoding, input.core),
+                                 static_cast<double>(deviations.greatest) + rounding));
 }
 
 }  // namespace
@@ -104,9 +148,9 @@ void halveHeights(const HeightViews& fine, HeightSamples& coarse, int64_t firstR
     const GridRect rows = {0, firstRow, coarse.mean.width(), fine.mean.height() / 2};
     TERRAY_CHECK_OP(fine.mean.width(), ==, 2 * rows.width);
     TERRAY_CHECK_OP(fine.mean.height(), ==, 2 * rows.height);
-    halve(fine.mean, coarse.mean.view().window(rows), meanOfHeights);
-    halve(fine.lowest, coarse.lowest.view().window(rows), leastOf);
-    halve(fine.highest, coarse.highest.view().window(rows), greatestOf);
+    halveMeans(fine.mean, coarse.mean.view().window(rows));
+    halveBounds(fine.lowest, coarse.lowest.view().window(rows), lesser);
+    halveBounds(fine.highest, coarse.highest.view().window(rows), greater);
 }
 
 std::optional<HeightTile> makeHeightTile(const HeightTileInput& input) {
@@ -121,7 +165,7 @@ std::optional<HeightTile> makeHeightTile(const HeightTileInput& input) {
     tile.encoding =
         HeightEncoding::covering(static_cast<double>(range.least), static_cast<double>(range.greatest), input.quantum);
     tile.codes = quantised(input.mean, tile.encoding);
-    tile.record = measureRecord(tile.codes, tile.encoding, measureError(tile.codes, tile.encoding, input.core));
+    tile.record = measureRecord(tile.codes, tile.encoding, measureError(tile, input));
     tile.children = input.children;
     return tile;
 }

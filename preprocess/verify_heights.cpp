@@ -7,10 +7,23 @@
 #include "common/height_tile.h"
 #include "common/parallel.h"
 #include "preprocess/block_plan.h"
+#include "preprocess/height_samples.h"
+#include "preprocess/surface_deviation.h"
 #include "preprocess/verify_faults.h"
 
 namespace terray {
 namespace {
+
+/// Decoded heights, metres, rounded to float; NaN without surface.
+Grid<float> decoded(const HeightTile& tile, const GridRect& cells) {
+    Grid<float> heights({cells.width, cells.height}, std::numeric_limits<float>::quiet_NaN());
+    const GridView<const uint16_t> codes = tile.codes.view().window(cells);
+    for (int64_t row = 0; row < cells.height; ++row)
+        for (int64_t column = 0; column < cells.width; ++column)
+            if (const uint16_t code = codes.at(column, row); code != kNoSurface)
+                heights.at(column, row) = static_cast<float>(tile.encoding.height(code));
+    return heights;
+}
 
 /// A core cell of a tile and the cells beneath it, decoded.
 struct CellFamily {
@@ -50,7 +63,38 @@ class ChildComparison {
                             result);
     }
 
+    /// The same for the bilinear surfaces: both are off by no more than their tiles' errors, so they are apart by no
+    /// more than the sum. And a tile's error is made of that distance, the child's and its own rounding, twice.
+    void compareSurfaces(uint32_t quadrant, Comparison& result) const {
+        if (!child_) return;
+        constexpr int64_t kHalf = kTileCore / 2, kRing = 1;
+        const Grid<float> fine = decoded(*child_, {0, 0, kHeightTileSide, kHeightTileSide});
+        HeightSamples coarse({kHalf + 2 * kRing, kHalf + 2 * kRing});
+        halveHeights({fine.view(), fine.view(), fine.view()}, coarse);
+        coarse.mean =
+            decoded(tile_, {kHeightApron - kRing + (quadrant & 1) * kHalf,
+                            kHeightApron - kRing + (quadrant >> 1) * kHalf, kHalf + 2 * kRing, kHalf + 2 * kRing});
+        Grid<float> apart({kHalf, kHalf});
+        boundDeviations({.coarse = coarse.views(), .fine = fine.view(), .fineDeviation = {}}, apart.view());
+        double greatest = 0;
+        for (const float distance : apart.cells())
+            if (!std::isnan(distance)) greatest = std::max(greatest, static_cast<double>(distance));
+        const double rounding = roundingOfSurfaces();
+        const auto childError = static_cast<double>(child_->record.error);
+        result.provenError = std::max(result.provenError, greatest - childError - rounding);
+        result.allowedError =
+            std::max(result.allowedError, greatest + childError + tile_.encoding.metresPerCode() + rounding);
+    }
+
   private:
+    /// What boundDeviations() may add, here and when the tile was built: it works on heights around that lie within the
+    /// finest ones; and the rounding of decoded heights to float.
+    [[nodiscard]] double roundingOfSurfaces() const {
+        const double range = static_cast<double>(tile_.record.maxHeight) - static_cast<double>(tile_.record.minHeight) +
+                             2 * static_cast<double>(tile_.record.error);
+        return std::ldexp(range, -18) + roundingOfMeans_;
+    }
+
     [[nodiscard]] std::array<double, 4> cellsBeneath(int64_t column, int64_t row) const {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         if (!child_) return {kNone, kNone, kNone, kNone};
@@ -174,8 +218,11 @@ class HeightVerifier {
         if (!complete) return;  // reported already; without all children the tile itself cannot be judged
 
         Comparison result;
-        for (uint32_t quadrant = 0; quadrant < 4; ++quadrant)
-            ChildComparison(tile, children[quadrant], roundingOfMeans(tile)).compare(quadrant, result);
+        for (uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+            const ChildComparison comparison(tile, children[quadrant], roundingOfMeans(tile));
+            comparison.compare(quadrant, result);
+            if (metadata_.errorsHoldEverywhere) comparison.compareSurfaces(quadrant, result);
+        }
         report(tile, result);
     }
 

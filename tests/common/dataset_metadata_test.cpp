@@ -90,7 +90,7 @@ TEST(DatasetMetadata, RefusesEachMissingField) {
     collectPaths(json, {}, paths);
     EXPECT_GE(paths.size(), 25U);
     for (const Path& path : paths) {
-        if (path.back() == "errorBound") continue;  // younger than the format
+        if (path.back() == "errorBound" || path.back() == "errorsHold") continue;  // younger than the format
         const std::string message = complaint(copyWith(json, path, nullptr));
         EXPECT_NE(message, "accepted") << join(path);
         EXPECT_NE(message.find(path.back()), std::string::npos) << message;
@@ -100,6 +100,15 @@ TEST(DatasetMetadata, RefusesEachMissingField) {
 TEST(DatasetMetadata, TakesTheMeasuredErrorForABoundThatIsNotThere) {
     const Json json = copyWith(toJson(fullMetadata()), {"heights", "errorBound"}, nullptr);
     EXPECT_EQ(metadataFromJson(json).value().errorBound, 0.0025);
+}
+
+TEST(DatasetMetadata, TakesErrorsForThoseOfAnOlderBuildUnlessItSaysOtherwise) {
+    const Json json = toJson(fullMetadata());
+    EXPECT_TRUE(metadataFromJson(json).value().errorsHoldEverywhere);
+    const Json older = copyWith(json, {"heights", "errorsHold"}, nullptr);
+    EXPECT_FALSE(metadataFromJson(older).value().errorsHoldEverywhere);
+    const Json other("somewhere");
+    EXPECT_NE(complaint(copyWith(json, {"heights", "errorsHold"}, &other)).find("errorsHold"), std::string::npos);
 }
 
 TEST(DatasetMetadata, RefusesEachFieldOfAnotherKind) {

@@ -30,8 +30,11 @@ TEST(KnownHeights, APlaneStaysAPlane) {
         const double side = std::ldexp(1.0, 2 - static_cast<int>(id.level));  // finest samples along a cell
         const auto column = static_cast<double>(512 * id.x + 100);
         EXPECT_DOUBLE_EQ(heightAt(tile, 100, 3), ((column + 0.5) * side - 0.5) / 4) << id;
-        // The samples farthest from a cell's centre lie (side - 1) / 2 away.
-        EXPECT_FLOAT_EQ(tile.record.error, static_cast<float>((side - 1) / 2 / 4)) << id;
+        // The samples farthest from a cell's centre lie (side - 1) / 2 away. At the ground's rim, where there is
+        // nothing to go on to, the bilinear surface is off by as much, and some 2^-19 of the relief is added for
+        // rounding.
+        EXPECT_GE(tile.record.error, static_cast<float>((side - 1) / 2 / 4)) << id;
+        EXPECT_LE(tile.record.error, (side - 1) / 2 / 4 * (1 + 1e-4)) << id;
         EXPECT_TRUE(tile.record.hasHoles) << id;  // beyond the southern edge, at the least
     }
     EXPECT_EQ(tiles.size(), 4u + 2 + 1);
@@ -60,7 +63,11 @@ TEST(KnownHeights, ASpikeIsRememberedByEveryErrorAbove) {
             tiles.at({level, static_cast<uint32_t>(x / kTileCore), static_cast<uint32_t>(y / kTileCore)});
         const double mean = 256.0 / static_cast<double>(side * side);
         EXPECT_DOUBLE_EQ(heightAt(tile, x % kTileCore, y % kTileCore), mean);
-        EXPECT_EQ(tile.record.error, static_cast<float>(256 - mean));
+        // One level up the bilinear surface is lower over the spike than the mean: 9/16 of it. No more is proven of
+        // the root than the range of heights.
+        const double off[] = {252, 256 - 64 * 9 / 16.0, 0};
+        EXPECT_GE(tile.record.error, static_cast<float>(256 - mean));
+        EXPECT_NEAR(tile.record.error, off[level], 0.001);
         EXPECT_EQ(tile.record.maxHeight, static_cast<float>(mean));
     }
     // Tiles that the spike is not in know nothing of it.
