@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "common/surface_range.h"
+
 namespace terray {
 namespace {
 
@@ -61,6 +63,24 @@ uint64_t tilesTo(uint32_t finestLevel) {
     return tiles;
 }
 
+/// How far the surface over a cell may lie from the finest one.
+double surfaceRange(const Grid<FormulaCell>& cells, int64_t column, int64_t row) {
+    const FormulaCell& own = cells.at(column, row);
+    CellHeights<double> around = {own.mean, own.mean, own.low, own.high};
+    for (int64_t y = row - 1; y <= row + 1; ++y)
+        for (int64_t x = column - 1; x <= column + 1; ++x) {
+            const FormulaCell& of = cells.at(x, y);
+            around = {std::fmin(around.leastMean, of.mean), std::fmax(around.greatestMean, of.mean),
+                      std::fmin(around.lowest, of.low), std::fmax(around.highest, of.high)};
+        }
+    return surfaceRangeBound({own.mean, own.mean, own.low, own.high}, around);
+}
+
+/// How far a cell lies from the finest samples beneath it.
+double columnRange(const FormulaCell& cell) {
+    return std::max(cell.mean - cell.low, cell.high - cell.mean);
+}
+
 }  // namespace
 
 FormulaDataset::FormulaDataset(const Shape& shape, const Heights& heights)
@@ -71,6 +91,7 @@ FormulaDataset::FormulaDataset(const Shape& shape, Cells cells) : cells_(std::mo
     metadata_.tiling = {shape.west, shape.north, shape.spacing, finestLevelOf(shape)};
     metadata_.samples = shape.samples;
     metadata_.quantum = shape.quantum;
+    metadata_.errorsHoldEverywhere = shape.errorsHoldEverywhere;
     metadata_.heightTiles = tilesTo(metadata_.tiling.finestLevel);
     metadata_.tool = "formula";
     const HeightRecord root = recordOf({});
@@ -88,31 +109,40 @@ FormulaCell FormulaDataset::cell(const TileId& tile, int column, int row) const 
     return cells_(up, x, y);
 }
 
+Grid<FormulaCell> FormulaDataset::cells(const TileId& id) const {
+    Grid<FormulaCell> cells({kHeightTileSide, kHeightTileSide});
+    for (int row = 0; row < kHeightTileSide; ++row)
+        for (int column = 0; column < kHeightTileSide; ++column)
+            cells.at(column, row) = cell(id, column - kHeightApron, row - kHeightApron);
+    return cells;
+}
+
 HeightTile FormulaDataset::alone(const TileId& id) const {
-    const auto forAll = [&](auto use) {
-        for (int row = -kHeightApron; row < kTileCore + kHeightApron; ++row)
-            for (int column = -kHeightApron; column < kTileCore + kHeightApron; ++column) {
-                const FormulaCell of = cell(id, column, row);
-                if (!std::isnan(of.mean)) use(column, row, of);
-            }
-    };
+    const Grid<FormulaCell> cells = this->cells(id);
     double low = kNaN, high = kNaN;
-    forAll([&](int, int, const FormulaCell& of) {
+    for (const FormulaCell& of : cells.cells()) {
         low = std::fmin(low, of.mean);
         high = std::fmax(high, of.mean);
-    });
+    }
     HeightTile tile{.id = id, .codes = Grid<uint16_t>({kHeightTileSide, kHeightTileSide}, kNoSurface)};
     if (std::isnan(low)) return tile;
     tile.encoding = HeightEncoding::covering(low, high, metadata_.quantum);
-    double error = 0;
-    forAll([&](int column, int row, const FormulaCell& of) {
-        const uint16_t code = tile.encoding.code(of.mean);
-        tile.codes.at(column + kHeightApron, row + kHeightApron) = code;
-        const double height = tile.encoding.height(code);
-        const bool inCore = std::min(column, row) >= 0 && std::max(column, row) < kTileCore;
-        if (inCore) error = std::max({error, of.high - height, height - of.low});
-    });
-    tile.record = measureRecord(tile.codes, tile.encoding, floatAtLeast(error));
+    double rounding = 0, apart = 0;
+    const bool finest = id.level == metadata_.tiling.finestLevel;
+    constexpr GridRect kCore = {kHeightApron, kHeightApron, kTileCore, kTileCore};
+    for (int64_t row = 0; row < kHeightTileSide; ++row)
+        for (int64_t column = 0; column < kHeightTileSide; ++column) {
+            const double mean = cells.at(column, row).mean;
+            if (std::isnan(mean)) continue;
+            const uint16_t code = tile.encoding.code(mean);
+            tile.codes.at(column, row) = code;
+            rounding = std::max(rounding, std::abs(tile.encoding.height(code) - mean));
+            const bool inCore = !intersection({column, row, 1, 1}, kCore).empty();
+            if (inCore && !finest)
+                apart = std::max(apart, metadata_.errorsHoldEverywhere ? surfaceRange(cells, column, row)
+                                                                       : columnRange(cells.at(column, row)));
+        }
+    tile.record = measureRecord(tile.codes, tile.encoding, floatAtLeast(apart + rounding));
     return tile;
 }
 

@@ -16,7 +16,8 @@ struct FormulaCell {
 };
 
 /// A dataset of heights in main memory, made from a formula as FORMAT.md says: coarser samples are means, records hold
-/// measured bounds and errors. Tiles are made when they are first read, so it may be as large as one likes.
+/// measured bounds, and errors by surfaceRangeBound(), which needs no other level. Tiles are made when they are first
+/// read, so it may be as large as one likes.
 class FormulaDataset final : public TileSource {
   public:
     struct Shape {
@@ -25,7 +26,8 @@ class FormulaDataset final : public TileSource {
         double west = 0;     ///< of the upper left corner, metres
         double north = 0;
         double quantum = 0.01;
-        uint32_t levels = 0;  ///< at least so many beside the coarsest, more where the samples need them
+        uint32_t levels = 0;               ///< at least so many beside the coarsest, more where the samples need them
+        bool errorsHoldEverywhere = true;  ///< false: as of an older build's dataset, at samples only
     };
     /// Height in metres of a finest sample, NaN: no surface.
     using Heights = std::function<double(int64_t column, int64_t row)>;
@@ -43,6 +45,8 @@ class FormulaDataset final : public TileSource {
 
   private:
     [[nodiscard]] FormulaCell cell(const TileId& tile, int column, int row) const;
+    /// Of a tile, apron included.
+    [[nodiscard]] Grid<FormulaCell> cells(const TileId& tile) const;
     /// Without its children's records.
     [[nodiscard]] HeightTile alone(const TileId& id) const;
     [[nodiscard]] HeightRecord recordOf(const TileId& id) const;

@@ -11,13 +11,14 @@ namespace {
 constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
 
 /// Flat ground but for one finest tile, south-east of the middle, that is a checkerboard: its neighbours are drawn from
-/// tiles up to `jump` levels coarser, since these are exact.
+/// tiles up to `jump` levels coarser, since these are exact at their samples, where this dataset's errors hold.
 StabilityScene levelJump(uint32_t jump) {
     constexpr double kRough = 4;  // metres, up and down
     const uint32_t finest = jump + 1;
     const int64_t middle = int64_t{kTileCore} << (finest - 1);
     FormulaDataset::Shape shape = kShape;
     shape.samples = {2 * middle, 2 * middle};
+    shape.errorsHoldEverywhere = false;
     const auto cells = [middle](uint32_t up, int64_t column, int64_t row) -> FormulaCell {
         const auto isRough = [&](int64_t at) { return at << up >= middle && at << up < middle + kTileCore; };
         if (!isRough(column) || !isRough(row)) return {0, 0, 0};
