@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "common/earth_curvature.h"
+#include "common/grid.h"
 
 namespace terray {
 
@@ -20,6 +21,9 @@ namespace terray {
 /// Exaggerated, z of this world is `exaggeration` times the height in the dataset, for eye, ground and drop alike: what
 /// hides what from the eye is as it was, and an eye near the ground stays near it. Bounds and errors of tiles, whatever
 /// is stored, and camera positions stay heights.
+///
+/// Where only a part of the picture is drawn, all else still tells of the whole picture, so that parts side by side are
+/// the picture: the same rays, sizes in pixels and levels of detail.
 struct View {
     glm::dvec3 eye{0};
     glm::dvec3 right{1, 0, 0};  ///< right, up, forward: orthonormal, right-handed (right x up = -forward)
@@ -30,8 +34,11 @@ struct View {
     int height = 1;                       ///< pixels
     std::optional<EarthCurvature> earth;  ///< of this world, so exaggerated; none: a flat earth
     double exaggeration = 1;              ///< z over height, > 0
+    std::optional<GridRect> part;         ///< what is drawn, rows from the top; none: all of the picture
 
     [[nodiscard]] double tanHalfWidth() const { return tanHalfHeight * width / height; }
+    /// What is drawn, all of the picture or its part.
+    [[nodiscard]] GridRect drawn() const { return part.value_or(GridRect{0, 0, width, height}); }
     /// Pixels per unit of slope on the image axis: an object of size s at view depth d covers s / d * focalPixels().
     [[nodiscard]] double focalPixels() const { return height / (2 * tanHalfHeight); }
     /// Direction of the ray through a point of the picture, in pixels from the upper-left corner (centres at +0.5).

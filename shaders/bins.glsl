@@ -10,9 +10,9 @@ layout(location = TERRAY_UNIFORM_NODE) uniform uint nodeCount;
 
 uint wordsOfBin() { return (nodeCount + 31u) / 32u; }
 
-// Where the words of a bin begin. bin: column and row, counted from the picture's lower left corner.
+// Where the words of a bin begin. bin: column and row, counted from the lower left corner of what is drawn.
 uint firstWord(uvec2 bin) {
-    uint binsAcross = (uint(frame.right.w) + TERRAY_BIN_SIDE - 1u) / TERRAY_BIN_SIDE;
+    uint binsAcross = (uint(frame.part.z) + TERRAY_BIN_SIDE - 1u) / TERRAY_BIN_SIDE;
     return (bin.y * binsAcross + bin.x) * wordsOfBin();
 }
 

@@ -1,5 +1,5 @@
 // box.vert: the bounding box of a draw node, widened by a pixel so that every pixel whose ray meets the box is covered.
-// The march itself uses the exact box. Reversed depth, infinite far plane: depth = near / view depth.
+// The march itself uses the exact box.
 #include "nodes.glsl"
 
 layout(location = TERRAY_UNIFORM_NODE) uniform uint nodeIndex;
@@ -11,6 +11,5 @@ void main() {
     vec3 fromEye = (mix(node.boxMin.xyz, node.boxMax.xyz, corner) - node.eye.xyz) * scale;
     fromEye = seenCorner(node, fromEye, corner.z);
     fromEye += (2.0 * corner - 1.0) * sign(scale) * node.up.w;
-    gl_Position = vec4(dot(fromEye, frame.right.xyz) * frame.viewScale.x, dot(fromEye, frame.up.xyz) * frame.viewScale.y,
-                       frame.forward.w, dot(fromEye, frame.forward.xyz));
+    gl_Position = clipPosition(fromEye);
 }

@@ -109,6 +109,8 @@ struct FrameParameters {
     vec4 ground;     // rgb: linear colour of ground without photo
     vec4 bend;       // curved earth: height gained per squared metre, xyz: east east, east north, north north
     vec4 air;        // x: visual range at sea level, y: the eye's height above the sea, metres; z: height over world z
+    vec4 part;       // what is drawn of the picture: x, y: its lower left corner, z: width, w: height, pixels
+    vec4 partClip;   // from clip coordinates of the picture to those of the part: xy: scale, zw: shift, of w
 };
 
 // What a sky is made for.
@@ -180,7 +182,7 @@ static_assert(sizeof(SkyParameters) == (3 + 2 * TERRAY_SKY_LIGHTS) * 16);
 static_assert(sizeof(ShadowCell) == 3 * 16);
 static_assert(sizeof(ShadowParameters) == 3 * 16);
 static_assert(sizeof(NodeParameters) == 8 * 16);
-static_assert(sizeof(FrameParameters) == 8 * 16);
+static_assert(sizeof(FrameParameters) == 10 * 16);
 }  // namespace terray::interop
 #endif
 

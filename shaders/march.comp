@@ -16,7 +16,7 @@ const uint kNoNode = 0xffffffffu;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(vec2(pixel), vec2(frame.right.w, frame.up.w)))) return;
+    if (any(greaterThanEqual(vec2(pixel), frame.part.zw))) return;
     vec2 centre = vec2(pixel) + 0.5;
     vec2 position = picturePosition(centre);
 

@@ -9,8 +9,20 @@
 layout(std430, binding = TERRAY_BUFFER_NODES) readonly buffer NodeBuffer { NodeParameters nodes[]; };
 layout(std140, binding = TERRAY_BUFFER_FRAME) uniform FrameBuffer { FrameParameters frame; };
 
-// Where a pixel lies on the picture, -1 .. 1 to the right and up. pixel: centres at + 0.5, as gl_FragCoord.xy.
-vec2 picturePosition(vec2 pixel) { return 2.0 * pixel / vec2(frame.right.w, frame.up.w) - 1.0; }
+// Where a pixel lies on the picture, -1 .. 1 to the right and up. pixel: centres at + 0.5, as gl_FragCoord.xy, of the part that
+// is drawn. Sums of pixels are exact, so that a part's rays are the picture's, to the last bit.
+vec2 picturePosition(vec2 pixel) { return 2.0 * (pixel + frame.part.xy) / vec2(frame.right.w, frame.up.w) - 1.0; }
+
+// A pixel of the part that is drawn as one of the picture: for patterns, so that they go on from part to part.
+ivec2 picturePixel(ivec2 pixel) { return pixel + ivec2(frame.part.xy); }
+
+// Clip coordinates of a place, reversed depth, infinite far plane: depth = near / view depth. fromEye: metres east, north, up,
+// as straight lines of sight see it.
+vec4 clipPosition(vec3 fromEye) {
+    float depth = dot(fromEye, frame.forward.xyz);
+    vec2 onPicture = vec2(dot(fromEye, frame.right.xyz), dot(fromEye, frame.up.xyz)) * frame.viewScale.xy;
+    return vec4(onPicture * frame.partClip.xy + depth * frame.partClip.zw, frame.forward.w, depth);
+}
 
 // Direction of a pixel's ray in the node's tile frame, for one metre of view depth. From the camera, not from the box's
 // vertices, so that neighbouring nodes see the same ray.

@@ -27,5 +27,5 @@ void main() {
     Light light = lightAt(height);
     vec3 shaded = lit(colour, normal, frame.sun.xyz, light, 1.0) +
                   lit(colour, vec3(0.0, 0.0, 1.0), frame.sun.xyz, light, 1.0) * kGroundLight * (0.5 - 0.5 * normal.z);
-    outColour = vec4(storedColour(throughAir(shaded, normalize(seen), length(seen), height), pixel), 1.0);
+    outColour = vec4(storedColour(throughAir(shaded, normalize(seen), length(seen), height), picturePixel(pixel)), 1.0);
 }

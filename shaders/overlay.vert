@@ -1,5 +1,5 @@
 // overlay.vert: a corner of a triangle in the terrain's picture (OverlayVertex of common/overlay_mesh.h).
-// Frame: world axes (metres east, north, up) from the eye. Reversed depth, infinite far plane, as in box.vert.
+// Frame: world axes (metres east, north, up) from the eye.
 #include "nodes.glsl"
 
 layout(location = TERRAY_UNIFORM_ORIGIN) uniform vec4 origin;   // of the mesh, from the eye; w: exaggeration of heights
@@ -29,6 +29,5 @@ void main() {
     seen = bentPosition(corner);
     height = frame.air.y + corner.z * frame.air.z;
     worldNormal = normal;
-    gl_Position = vec4(dot(seen, frame.right.xyz) * frame.viewScale.x, dot(seen, frame.up.xyz) * frame.viewScale.y,
-                       frame.forward.w, dot(seen, frame.forward.xyz));
+    gl_Position = clipPosition(seen);
 }

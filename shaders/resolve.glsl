@@ -48,7 +48,7 @@ Resolved resolvePixel(ivec2 pixel) {
 #if TERRAY_SHADE_STEPS || TERRAY_SHADE_SHADOW_STEPS
     resolved.colour = stepColour(pixel);
 #endif
-    resolved.colour = storedColour(resolved.colour, pixel);
+    resolved.colour = storedColour(resolved.colour, picturePixel(pixel));
     return resolved;
 }
 

@@ -13,7 +13,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uint found = texelFetch(hitNodes, pixel, 0).r;
     SunLight light = SunLight(1.0, 0u);
-    if (found != 0u) light = sunLight(found - 1u, texelFetch(hits, pixel, 0).xyz, pixel);
+    if (found != 0u) light = sunLight(found - 1u, texelFetch(hits, pixel, 0).xyz, picturePixel(pixel));
 #if TERRAY_STATISTICS
     imageStore(shadowStepImage, pixel, uvec4(light.steps));
 #endif

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "client/engine/draw_costs_file.h"
 #include "client/engine/engine_setup.h"
@@ -40,17 +41,25 @@ constexpr size_t kMostTilesAhead = 32;
 /// makes detail be given up.
 constexpr int kMostUploadsInAWait = 3;
 
+/// Size of what is drawn of a picture.
+glm::ivec2 heldOf(glm::ivec2 picture, const std::optional<GridRect>& part) {
+    return part ? glm::ivec2(part->width, part->height) : picture;
+}
+
 }  // namespace
 
 struct Engine::State {
-    State(const TileSource& tiles, const ShaderLibrary& shaders, const EngineOptions& given, int width, int height)
+    State(const TileSource& tiles, const ShaderLibrary& shaders, const EngineOptions& given, glm::ivec2 size,
+          const std::optional<GridRect>& drawn)
         : source(tiles),
           options(settled(given, source)),
-          earth(earthOf(source.metadata(), options, width, height)),
+          earth(earthOf(source.metadata(), options, size.x, size.y)),
           sunClock(clockOf(source.metadata(), options)),
           resident(source, shaders, slotOptions(source, options, earth), options.features.imagery),
           renderer(shaders, source.metadata().tiling),
-          targets(width, height, options.features, options.colour),
+          targets(heldOf(size, drawn).x, heldOf(size, drawn).y, options.features, options.colour),
+          picture(size),
+          part(drawn),
           uploadPace(options.uploadBytesPerFrame, options.uploadShare),
           mostPending(mostPendingTiles(options.pager.hostBudgetBytes)),
           pager(source, withoutPending(options.pager)) {
@@ -70,6 +79,7 @@ struct Engine::State {
     /// What the camera as it moves will want soon.
     [[nodiscard]] std::vector<TileRequest> tilesAhead();
     [[nodiscard]] View viewFrom(const Camera& camera) const;
+    void resize(glm::ivec2 size, const std::optional<GridRect>& drawn);
     std::vector<TileKey> upload(const std::vector<TileRequest>& order, uint64_t budgetBytes);
     void learnUploadTime();
     /// One frame's share of paging: what has arrived is uploaded within the budget, what is lacking is asked for.
@@ -90,6 +100,8 @@ struct Engine::State {
     ResidentTiles resident;
     TerrainRenderer renderer;
     FrameTargets targets;
+    glm::ivec2 picture;            ///< width and height of what targets hold, or hold a part of
+    std::optional<GridRect> part;  ///< of it
     GpuTimer timer;
     KeySet failed;
     CameraMotion motion;
@@ -163,7 +175,8 @@ bool Engine::State::takeEdits() {
 }
 
 View Engine::State::viewFrom(const Camera& camera) const {
-    View seen = viewOf(camera, targets.width(), targets.height());
+    View seen = viewOf(camera, picture.x, picture.y);
+    seen.part = part;
     seen.earth = earth.at(camera.position);
     return exaggerated(seen, options.exaggeration);
 }
@@ -265,8 +278,8 @@ void requireAllTiles(const FrameReport& report, const std::string& consequence) 
 }
 
 Engine::Engine(const TileSource& source, const ShaderLibrary& shaders, const EngineOptions& options, int width,
-               int height)
-    : state_(std::make_unique<State>(source, shaders, options, width, height)) {
+               int height, const std::optional<GridRect>& part)
+    : state_(std::make_unique<State>(source, shaders, options, glm::ivec2(width, height), part)) {
     RenderOptions& render = state_->options.render;
     if (render.method.method == Method::hybrid && !render.drawCosts)
         render.drawCosts = settledDrawCosts(options.drawCostsFile, shaders);
@@ -289,8 +302,8 @@ FrameReport Engine::drawFrame(const Camera& camera, bool waitForTiles) {
 FrameReport Engine::drawView(const View& view, bool waitForTiles) {
     const Clock::time_point start = Clock::now();
     State& state = *state_;
-    TERRAY_CHECK_OP(view.width, ==, state.targets.width());
-    TERRAY_CHECK_OP(view.height, ==, state.targets.height());
+    TERRAY_CHECK_OP(view.drawn().width, ==, state.targets.width());
+    TERRAY_CHECK_OP(view.drawn().height, ==, state.targets.height());
     state.report = {};
     state.view = view;
     state.timer.enter(GpuPass::upload);
@@ -313,11 +326,24 @@ FrameReport Engine::drawView(const View& view, bool waitForTiles) {
     return std::exchange(state.report, {});
 }
 
+void Engine::State::resize(glm::ivec2 size, const std::optional<GridRect>& drawn) {
+    const glm::ivec2 held = heldOf(size, drawn);
+    if (held != glm::ivec2(targets.width(), targets.height()))
+        targets = FrameTargets(held.x, held.y, options.features, options.colour);
+    if (picture != size) earth = earthOf(source.metadata(), options, size.x, size.y);
+    picture = size;
+    part = drawn;
+}
+
 void Engine::resize(int width, int height) {
-    const FrameTargets& old = state_->targets;
-    if (old.width() == width && old.height() == height) return;
-    state_->targets = FrameTargets(width, height, state_->options.features, state_->options.colour);
-    state_->earth = earthOf(state_->source.metadata(), state_->options, width, height);
+    state_->resize({width, height}, std::nullopt);
+}
+
+void Engine::resizeToPart(int width, int height, const GridRect& part) {
+    TERRAY_CHECK(part.x >= 0 && part.y >= 0 && part.width > 0 && part.height > 0);
+    TERRAY_CHECK_OP(part.x + part.width, <=, width);
+    TERRAY_CHECK_OP(part.y + part.height, <=, height);
+    state_->resize({width, height}, part);
 }
 
 const EngineOptions& Engine::options() const {
@@ -340,7 +366,8 @@ void Engine::setOptions(const EngineOptions& given) {
 
     const int width = state.targets.width(), height = state.targets.height();
     if (wanted.sunTime != state.options.sunTime) state.sunClock = clockOf(state.source.metadata(), wanted);
-    if (wanted.earth != state.options.earth) state.earth = earthOf(state.source.metadata(), wanted, width, height);
+    if (wanted.earth != state.options.earth)
+        state.earth = earthOf(state.source.metadata(), wanted, state.picture.x, state.picture.y);
     if (wanted.features != state.options.features)
         state.targets = FrameTargets(width, height, wanted.features, wanted.colour);
     state.options = std::move(wanted);

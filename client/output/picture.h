@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -13,6 +14,23 @@
 #include "common/rgba.h"
 
 namespace terray {
+
+/// Writes a PNG as writePng() does, row by row from the top, as rows come: of any size, in the memory of the rows given
+/// at a time. The file appears whole at finish(), or not at all. Throws Error(output) when it cannot be written.
+class PngWriter {
+  public:
+    PngWriter(const std::filesystem::path& path, GridSize size);
+    ~PngWriter();
+
+    /// The next rows, as wide as the picture and no more of them than it still lacks.
+    void write(GridView<const Rgba> rows);
+    /// After the last row.
+    void finish();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 /// Writes a picture as PNG: 8-bit sRGB with alpha, row 0 at the top, through OpenImageIO. The file appears whole or not
 /// at all. Throws Error(output) when it cannot be written.

@@ -9,8 +9,9 @@ namespace {
 
 /// Work groups of squares over the picture. 16384 pixels make 2048 groups a side, far below the 65535 that GL promises.
 void dispatchOverPicture(const View& view, int squareSide) {
-    const auto groups = [&](int pixels) { return static_cast<GLuint>((pixels + squareSide - 1) / squareSide); };
-    glDispatchCompute(groups(view.width), groups(view.height), 1);
+    const auto groups = [&](int64_t pixels) { return static_cast<GLuint>((pixels + squareSide - 1) / squareSide); };
+    const GridRect part = view.drawn();
+    glDispatchCompute(groups(part.width), groups(part.height), 1);
 }
 
 void bindImage(GLuint unit, const GlTexture& texture, GLenum format) {
@@ -35,10 +36,11 @@ void ComputeLaunch::bin(const CastFrame& frame) {
     boxes_.clear();
     for (const interop::NodeParameters& node : frame.nodes) boxes_.push_back(pixelBounds(node, frame.view));
     const uint64_t boxBytes = boxes_.size() * sizeof(glm::vec4);
-    const auto across = [](int pixels) {
+    const auto across = [](int64_t pixels) {
         return static_cast<uint64_t>((pixels + TERRAY_BIN_SIDE - 1) / TERRAY_BIN_SIDE);
     };
-    const uint64_t bins = across(frame.view.width) * across(frame.view.height);
+    const GridRect part = frame.view.drawn();
+    const uint64_t bins = across(part.width) * across(part.height);
     boxBuffer_.require(boxBytes);
     binBuffer_.require(bins * ((boxes_.size() + 31) / 32) * sizeof(uint32_t));
     if (boxBytes > 0) {

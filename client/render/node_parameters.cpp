@@ -174,6 +174,10 @@ glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view) {
         least = glm::min(least, point);
         greatest = glm::max(greatest, point);
     }
+    const GridRect part = view.drawn();
+    const glm::dvec2 corner(part.x, view.height - part.y - part.height);
+    least -= corner;
+    greatest -= corner;
     return glm::clamp(glm::vec4(least - 1.0, greatest + 1.0), -kManyPixels, kManyPixels);
 }
 

@@ -45,9 +45,9 @@ struct NodeSource {
 [[nodiscard]] bool magnified(const DrawNode& node, const Tiling& tiling, const View& view);
 
 /// The pixels that a node's box covers as it is seen (over a curved earth, lowered), as least x, least y, greatest x,
-/// greatest y, counted like gl_FragCoord (y from the bottom, centres at + 0.5), widened by one pixel; least > greatest
-/// when the box lies behind the eye. Conservative: every pixel whose ray meets the box lies inside, though most boxes
-/// cover only part of it.
+/// greatest y, counted like gl_FragCoord (of the part that is drawn; y from the bottom, centres at + 0.5), widened by
+/// one pixel; least > greatest when the box lies behind the eye. Conservative: every pixel whose ray meets the box lies
+/// inside, though most boxes cover only part of it.
 [[nodiscard]] glm::vec4 pixelBounds(const interop::NodeParameters& node, const View& view);
 
 /// How many pixels of the picture a node's box covers as it is seen: the area of its outline within the picture.

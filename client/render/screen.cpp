@@ -2,17 +2,34 @@
 
 #include <algorithm>
 
+#include "common/check.h"
+
 namespace terray {
 
 Screen::Screen() : framebuffer_(makeFramebuffer()) {}
 
 void Screen::show(const FrameTargets& targets, int width, int height) {
-    const bool sameSize = targets.width() == width && targets.height() == height;
-    glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, targets.colour.name(), 0);
+    show(targets.colour, {targets.width(), targets.height()}, {width, height});
+}
+
+void Screen::keep(const FrameTargets& targets) {
+    kept_ = {makeTexture(GL_TEXTURE_2D), targets.width(), targets.height()};
+    glTextureStorage2D(kept_.colour.name(), 1, GL_RGBA8, kept_.width, kept_.height);
+    glCopyImageSubData(targets.colour.name(), GL_TEXTURE_2D, 0, 0, 0, 0, kept_.colour.name(), GL_TEXTURE_2D, 0, 0, 0, 0,
+                       kept_.width, kept_.height, 1);
+}
+
+void Screen::showKept(int width, int height) {
+    TERRAY_CHECK(kept_.colour.name() != 0);
+    show(kept_.colour, {kept_.width, kept_.height}, {width, height});
+}
+
+void Screen::show(const GlTexture& colour, glm::ivec2 size, glm::ivec2 window) {
+    glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, colour.name(), 0);
     glDisable(GL_FRAMEBUFFER_SRGB);  // bytes are copied as they are
     glDisable(GL_SCISSOR_TEST);
-    glBlitNamedFramebuffer(framebuffer_.name(), 0, 0, 0, targets.width(), targets.height(), 0, 0, width, height,
-                           GL_COLOR_BUFFER_BIT, sameSize ? GL_NEAREST : GL_LINEAR);
+    glBlitNamedFramebuffer(framebuffer_.name(), 0, 0, 0, size.x, size.y, 0, 0, window.x, window.y, GL_COLOR_BUFFER_BIT,
+                           size == window ? GL_NEAREST : GL_LINEAR);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);  // what is drawn over the picture goes there too
 }
 

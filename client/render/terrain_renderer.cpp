@@ -32,6 +32,11 @@ interop::FrameParameters frameParameters(const View& view, const RenderOptions& 
                            linearFromSrgb(kNeutralGround[2]), 1);
     const EarthCurvature earth = view.earth.value_or(EarthCurvature());
     out.bend = pack({earth.xx, earth.xy, earth.yy}, 0);
+    const GridRect part = view.drawn();
+    const glm::dvec2 corner(part.x, view.height - part.y - part.height), size(part.width, part.height);
+    const glm::dvec2 whole(view.width, view.height);
+    out.part = glm::vec4(corner, size);
+    out.partClip = glm::vec4(whole / size, (whole - 2.0 * corner) / size - 1.0);
     out.air = glm::vec4(options.visualRange.value_or(Metres(0)).value(), view.eye.z / view.exaggeration,
                         1 / view.exaggeration, 0);
     return out;
@@ -250,8 +255,9 @@ void TerrainRenderer::setOverlay(std::span<const OverlayMesh> meshes) {
 void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, std::span<const DrawNode> casters,
                              const GpuTiles& tiles, const RenderOptions& options, FrameTargets& targets,
                              GpuTimer* timer) {
-    TERRAY_CHECK_OP(view.width, ==, targets.width());
-    TERRAY_CHECK_OP(view.height, ==, targets.height());
+    const GridRect part = view.drawn();
+    TERRAY_CHECK_OP(part.width, ==, targets.width());
+    TERRAY_CHECK_OP(part.height, ==, targets.height());
     if (timer != nullptr && options.sky) timer->enter(GpuPass::resolve);
     makeSky(view, options);
     drawn_.clear();
@@ -284,7 +290,7 @@ void TerrainRenderer::render(const View& view, std::span<const DrawNode> nodes, 
         targets.dropShadow();
     }
     chooseRasterised(view, nodes, tiles, options);
-    glViewport(0, 0, view.width, view.height);
+    glViewport(0, 0, targets.width(), targets.height());
     bindShading(options);
     bindMethod(options.method, tiles);
     bindTextures(targets, tiles, features.photoProbes ? 1 : options.anisotropy);

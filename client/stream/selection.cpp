@@ -299,10 +299,11 @@ class Fitting {
 
     Selection run() {
         const double both = leastFactor(1, [this](double f) { return nodesFit({f, f}); });
-        const double heights = leastFactor(both, [&](double f) {
+        const Coarsening& least = options_.leastCoarsening;
+        const double heights = leastFactor(std::max(both, least.heights), [&](double f) {
             return draw({f, both}).heightTiles.size() <= options_.maxHeightTiles;
         });
-        const double imagery = leastFactor(both, [&](double f) {
+        const double imagery = leastFactor(std::max(both, least.imagery), [&](double f) {
             return draw({heights, f}).imageryTiles.size() <= options_.maxImageryTiles;
         });
         (void)draw({heights, imagery});

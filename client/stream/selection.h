@@ -41,6 +41,13 @@ namespace terray {
 // With shadows, cells outside the picture whose shadow may fall into it are selected too, as casters, by the same
 // criteria of detail as what is seen: a shadow's edge fits what it falls on. Their tiles are asked for at half urgency.
 
+/// What tolerances were multiplied by to keep the limits; 1: nothing was given up.
+struct Coarsening {
+    double heights = 1;
+    double imagery = 1;
+    bool operator==(const Coarsening&) const = default;
+};
+
 struct SelectionOptions {
     Pixels tolerance{2.0 / 3.0};  ///< of the projected geometric error (paper 001, section 4)
     /// Heights by distance alone, in place of the tolerance (paper 000, section 3.5, tile by tile): the finest as far
@@ -56,13 +63,8 @@ struct SelectionOptions {
     size_t maxNodes = 4096;                                       ///< of the draw list
     size_t maxHeightTiles = std::numeric_limits<size_t>::max();   ///< of Selection::heightTiles
     size_t maxImageryTiles = std::numeric_limits<size_t>::max();  ///< of Selection::imageryTiles
-};
-
-/// What tolerances were multiplied by to keep the limits; 1: nothing was given up.
-struct Coarsening {
-    double heights = 1;
-    double imagery = 1;
-    bool operator==(const Coarsening&) const = default;
+    /// Tolerances are multiplied by no less than this: parts of a picture give up what one of them must.
+    Coarsening leastCoarsening;
 };
 
 /// A tile to load: wanted for this view and not resident.

@@ -50,10 +50,16 @@ Metres distanceTo(const Box& box, const glm::dvec3& point) {
     return Metres(glm::length(glm::max(glm::max(box.min - point, point - box.max), glm::dvec3(0))));
 }
 
-Frustum::Frustum(const View& view)
-    : eye_(view.eye),
-      inward_{view.tanHalfWidth() * view.forward + view.right, view.tanHalfWidth() * view.forward - view.right,
-              view.tanHalfHeight * view.forward + view.up, view.tanHalfHeight * view.forward - view.up, view.forward} {}
+Frustum::Frustum(const View& view) : eye_(view.eye) {
+    // Slopes of the rays at the edges.
+    const GridRect part = view.drawn();
+    const auto across = [&](double pixel) { return (2 * pixel / view.width - 1) * view.tanHalfWidth(); };
+    const auto along = [&](double pixel) { return (1 - 2 * pixel / view.height) * view.tanHalfHeight; };
+    const double left = across(static_cast<double>(part.x)), right = across(static_cast<double>(part.x + part.width));
+    const double top = along(static_cast<double>(part.y)), bottom = along(static_cast<double>(part.y + part.height));
+    inward_ = {view.right - left * view.forward, right * view.forward - view.right, view.up - bottom * view.forward,
+               top * view.forward - view.up, view.forward};
+}
 
 bool Frustum::mayMeet(const Box& box) const {
     return mayMeetShadow(box, glm::dvec3(0), 0);

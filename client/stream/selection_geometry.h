@@ -33,7 +33,8 @@ struct Box {
 /// From a point to the nearest point of a box; 0 inside.
 [[nodiscard]] Metres distanceTo(const Box& box, const glm::dvec3& point);
 
-/// What a picture sees: the side planes through the eye and the plane through the eye across the view axis.
+/// What a picture, or its part, sees: the side planes through the eye and the plane through the eye across the view
+/// axis.
 class Frustum {
   public:
     explicit Frustum(const View& view);

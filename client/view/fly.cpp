@@ -95,6 +95,7 @@ ExitCode fly(const ViewOptions& given, const Arguments& arguments, std::chrono::
     viewing.arguments = arguments;
     viewing.remembered = json;
     viewing.pictures = options.pictures;
+    viewing.part = options.partSize();
     viewing.targetFps = options.targetFps;
     viewing.window.title = viewing.datasetName + " - Terray";
     viewing.window.width = options.width;

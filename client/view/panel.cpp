@@ -110,7 +110,7 @@ constexpr HelpLine kHelp[] = {
     {"1-9, Ctrl+1-9", "recall, store a bookmark"},
     {"G", "go to latitude, longitude or x, y"},
     {"Ctrl+C", "copy the camera (for --camera)"},
-    {"P", "picture, with what draws it again beside it"},
+    {"P", "picture, with what draws it again beside it; its size: in the panel"},
     {"R, L", "record the flight, again: save it; replay it"},
     {"K", "keyframe editor of the flight"},
     {"Ins Enter Del", "in it: insert a key here, move it here, delete it"},
@@ -136,6 +136,9 @@ bool drawPanel(ViewSettings& settings, Radians& fieldOfView) {
         ImGui::Separator();
         changed |= lightControls(settings);
         ImGui::Separator();
+        (void)choice("pictures (P)", settings.pictureSize, kPictureSizes);
+        changed |=
+            slider("frame rate held", settings.targetFps, 0, 144, settings.targetFps > 0 ? "%.0f a second" : "none");
         changed |= ImGui::Checkbox("count rays' steps", &settings.countSteps);
         ImGui::SameLine();
         changed |= ImGui::Checkbox("vsync", &settings.vsync);

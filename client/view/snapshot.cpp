@@ -2,9 +2,11 @@
 
 #include <array>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "common/error.h"
+#include "common/output_file.h"
 #include "common/version.h"
 
 namespace terray {
@@ -14,7 +16,8 @@ constexpr const char* kFormat = "terray-picture";
 constexpr int kVersion = 1;
 
 /// Options that the window or the snapshot itself decides.
-constexpr std::array<std::string_view, 6> kReplaced = {"camera", "size", "vsync", "target-fps", "pictures", "launch"};
+constexpr std::array<std::string_view, 7> kReplaced = {"camera",   "size",   "vsync",    "target-fps",
+                                                       "pictures", "launch", "part-size"};
 
 Arguments withoutFlag(Arguments arguments, std::string_view flag) {
     std::erase(arguments, flag);
@@ -28,15 +31,16 @@ std::string required(const Result<std::string>& text) {
 
 }  // namespace
 
-Snapshot takeSnapshot(Engine& engine, const Camera& camera, const SnapshotScene& scene) {
+Snapshot::Snapshot(Engine& engine, const Camera& camera, const SnapshotScene& scene, const std::filesystem::path& path)
+    : path_(path) {
     // What the text says is drawn, not the camera itself, whose last digits it leaves out.
     const std::string text = required(formatCamera(camera, scene.projection));
     EngineOptions options = scene.settings.engine;
     options.render.launch = Launch::raster;
     options.features.statistics = false;
     engine.setOptions(options);
-    engine.resize(scene.size.x, scene.size.y);
-    requireAllTiles(engine.drawFrame(*parseCamera(text, scene.projection), true), "no picture was written");
+    picture_.emplace(engine, *parseCamera(text, scene.projection), path,
+                     PictureInParts::Options{.size = scene.size, .part = scene.part});
 
     Arguments arguments = withoutFlag(withoutOptions(scene.arguments, kReplaced), "--full-screen");
     arguments = withOptions(withEngineTexts(arguments, scene.settings),
@@ -46,14 +50,21 @@ Snapshot takeSnapshot(Engine& engine, const Camera& camera, const SnapshotScene&
     Json list = Json::Array{};
     for (const std::string& argument : arguments) list.push(argument);
     const BuildInfo& build = buildInfo();
-    return {.picture = engine.targets().readSrgb(),
-            .json = Json::Object{{"format", kFormat},
-                                 {"version", kVersion},
-                                 {"tool", "terray-view " + std::string(build.version)},
-                                 {"commit", std::string(build.commit)},
-                                 {"content_hash", scene.source.contentHash()},
-                                 {"camera", text},
-                                 {"arguments", std::move(list)}}};
+    json_ = Json::Object{{"format", kFormat},
+                         {"version", kVersion},
+                         {"tool", "terray-view " + std::string(build.version)},
+                         {"commit", std::string(build.commit)},
+                         {"content_hash", scene.source.contentHash()},
+                         {"camera", text},
+                         {"arguments", std::move(list)}};
+}
+
+void Snapshot::drawNext() {
+    picture_->drawNext();
+    if (!finished()) return;
+    std::filesystem::path beside = path_;
+    const std::string text = json_.dump() + "\n";
+    writeWholeFile(beside.replace_extension(".json"), std::as_bytes(std::span(text)));
 }
 
 Arguments reproducingArguments(const std::filesystem::path& path) {

@@ -17,6 +17,7 @@
 #include "client/output/picture.h"
 #include "client/render/gl_context.h"
 #include "client/view/fly.h"
+#include "client/view/picture_in_parts.h"
 #include "client/view/snapshot.h"
 #include "client/view/view_options.h"
 #include "common/output_file.h"
@@ -79,6 +80,33 @@ MeasuredPicture measure(const Engine& engine, const Camera& camera) {
     return picture;
 }
 
+/// What was drawn: of parts the greatest numbers.
+struct Drawn {
+    FrameReport report;
+    int parts = 1;
+};
+
+Drawn drawPng(Engine& engine, const Camera& camera, const ViewOptions& options) {
+    PictureInParts picture(engine, camera, options.out,
+                           {.size = {options.width, options.height}, .part = options.partSize()});
+    while (!picture.finished()) {
+        picture.drawNext();
+        throwIfInterrupted();
+    }
+    return {picture.report(), picture.parts()};
+}
+
+Drawn drawExr(Engine& engine, const Camera& camera, const ViewOptions& options) {
+    if (options.partSize())
+        throw Error(ExitCode::usage, "--part-size: found an --out that ends in .exr, expected .png (EXR is one piece)");
+    engine.resize(options.width, options.height);
+    const FrameReport report = engine.drawFrame(camera, true);
+    requireAllTiles(report, "no picture was written");
+    throwIfInterrupted();
+    writeExr(options.out, measure(engine, camera));
+    return {report};
+}
+
 ExitCode drawHeadless(const ViewOptions& options) {
     if (options.out.empty()) throw Error(ExitCode::usage, "--headless needs --out FILE.png or FILE.exr");
     const std::filesystem::path out = options.out;
@@ -93,20 +121,16 @@ ExitCode drawHeadless(const ViewOptions& options) {
     const HeadlessContext context;
     requireRendererFeatures();
     const ShaderLibrary shaders = options.engine.shaders();
-    Engine engine(*source, shaders, chosen, options.width, options.height);
+    // No memory for pixels until it is known how many are drawn at a time.
+    Engine engine(*source, shaders, chosen, options.width, options.height, GridRect{0, 0, 1, 1});
     const double aspect = static_cast<double>(options.width) / options.height;
     const Camera camera =
         given ? *given : overviewCamera(source->metadata(), aspect, engine.earth(), chosen.exaggeration);
-    const FrameReport report = engine.drawFrame(camera, true);
-    requireAllTiles(report, "no picture was written");
-    throwIfInterrupted();
-    if (kind == PictureKind::png) {
-        writePng(out, engine.targets().readSrgb().view());
-    } else {
-        writeExr(out, measure(engine, camera));
-    }
-    std::printf("%s: %d x %d pixels, %zu nodes from %zu height and %zu imagery tiles%s\n", out.c_str(), options.width,
-                options.height, report.nodes, report.residentHeights, report.residentImagery,
+    const Drawn drawn = kind == PictureKind::png ? drawPng(engine, camera, options) : drawExr(engine, camera, options);
+    const FrameReport& report = drawn.report;
+    const std::string parts = drawn.parts > 1 ? " in " + std::to_string(drawn.parts) + " parts, each up to" : ",";
+    std::printf("%s: %d x %d pixels%s %zu nodes from %zu height and %zu imagery tiles%s\n", out.c_str(), options.width,
+                options.height, parts.c_str(), report.nodes, report.residentHeights, report.residentImagery,
                 report.wanted > 0 ? ", and some tiles are lacking: the memory budget is too small" : "");
     if (report.coarsening != Coarsening())
         std::printf(

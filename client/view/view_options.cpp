@@ -24,6 +24,10 @@ bool ViewOptions::parse(const Arguments& arguments) {
                 "(0)");
     line.option("--pictures", pictures, "DIR", "where pictures and flights of the window go (.)");
     line.option("--out", out, "FILE.png|FILE.exr", "where the picture goes");
+    line.size("--part-size", partWidth, partHeight,
+              "largest part of a PNG (the window's too) that is drawn at a time: GPU memory is that of a part (all of "
+              "it up to 4 million "
+              "pixels, 2048x512 of larger ones)");
     line.flag("--force", force, "replace an existing picture");
     engine.declare(line);
     if (!line.parse(arguments)) return false;
@@ -32,6 +36,11 @@ bool ViewOptions::parse(const Arguments& arguments) {
     if (!(targetFps >= 0 && targetFps <= 1000))
         throw Error(ExitCode::usage, "--target-fps: found " + numberText(targetFps) + ", expected 0 to 1000");
     return true;
+}
+
+std::optional<glm::ivec2> ViewOptions::partSize() const {
+    if (partWidth == 0) return {};
+    return glm::ivec2(partWidth, partHeight);
 }
 
 std::optional<Camera> ViewOptions::cameraOver(const DatasetMetadata& metadata) const {

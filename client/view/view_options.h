@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include <glm/vec2.hpp>
+
 #include "client/engine/dataset_options.h"
 #include "client/engine/engine_options.h"
 #include "client/stream/camera.h"
@@ -23,10 +25,14 @@ struct ViewOptions {
     std::string pictures = ".";
     std::string out;
     bool force = false;
+    int partWidth = 0;  ///< 0: not given
+    int partHeight = 0;
     EngineCommandLine engine;
 
     /// Throws Error(usage) naming the culprit. @return false when help was asked for and printed
     [[nodiscard]] bool parse(const Arguments& arguments);
+    /// The largest part of a picture that is drawn at a time, if it was given.
+    [[nodiscard]] std::optional<glm::ivec2> partSize() const;
     /// The camera that was given, if one was. Throws Error(usage), or Error(georeference) as projectionOf.
     [[nodiscard]] std::optional<Camera> cameraOver(const DatasetMetadata& metadata) const;
 };

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <numbers>
 
+#include <glm/common.hpp>
+
 #include "client/engine/engine_options.h"
 
 namespace terray {
@@ -79,6 +81,18 @@ void ViewSettings::settle() {
     engine.features.statistics = countSteps;
 }
 
+glm::ivec2 pictureSize(PictureSize size, glm::ivec2 window) {
+    constexpr int kWide = 16384;
+    const int longer = std::max(window.x, window.y);
+    const double wanted = size == PictureSize::wide        ? double{kWide} / longer
+                          : size == PictureSize::fourTimes ? 4
+                          : size == PictureSize::twice     ? 2
+                                                           : 1;
+    // No picture is larger than 16384 but one of a window that is.
+    const double factor = std::min(wanted, std::max(double{kWide} / longer, 1.0));
+    return glm::max(glm::ivec2(glm::round(factor * glm::dvec2(window))), 1);
+}
+
 ViewSettings settingsFrom(const EngineOptions& options, const DatasetMetadata& metadata) {
     ViewSettings settings{.engine = options,
                           .canTellTime = !metadata.crsWkt.empty() && TERRAY_WITH_PROJ,
@@ -122,11 +136,9 @@ Json toJson(const ViewSettings& settings) {
     for (const auto& [name, value] : engineTexts(settings)) options.set(name, value);
     options.set("vsync", settings.vsync ? "on" : "off");
     options.set("target-fps", numberText(settings.targetFps));
-    return Json::Object{{"format", "terray-view-settings"},
-                        {"version", 1},
-                        {"options", std::move(options)},
-                        {"panel", settings.panel},
-                        {"instruments", settings.instruments}};
+    return Json::Object{{"format", "terray-view-settings"}, {"version", 1},
+                        {"options", std::move(options)},    {"picture_size", static_cast<int>(settings.pictureSize)},
+                        {"panel", settings.panel},          {"instruments", settings.instruments}};
 }
 
 Arguments withRemembered(const Json& remembered, const Arguments& arguments, bool canTellTime) {
@@ -147,6 +159,8 @@ Arguments withRemembered(const Json& remembered, const Arguments& arguments, boo
 }
 
 void restorePanels(const Json& remembered, ViewSettings& settings) {
+    if (const auto size = remembered.numberAt("picture_size"); size && *size >= 0 && *size < kPictureSizes.size())
+        settings.pictureSize = static_cast<PictureSize>(*size);
     settings.panel = remembered.boolAt("panel").ok() ? *remembered.boolAt("panel") : settings.panel;
     settings.instruments =
         remembered.boolAt("instruments").ok() ? *remembered.boolAt("instruments") : settings.instruments;

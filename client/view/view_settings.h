@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
+
+#include <glm/vec2.hpp>
 
 #include "client/engine/engine.h"
 #include "client/view/arguments.h"
@@ -23,6 +26,14 @@ struct SunSetting {
     [[nodiscard]] std::string text() const;
 };
 
+/// How large the pictures are that a person takes in the window: as wide as it, times so much, or at most 16384 pixels
+/// on the longer side.
+enum class PictureSize : uint8_t { window, twice, fourTimes, wide };
+inline constexpr std::array<const char*, 4> kPictureSizes = {"as the window", "2 times as wide", "4 times as wide",
+                                                             "16384 wide"};
+/// In pixels, of the window's shape. @param window  its size, each side > 0
+[[nodiscard]] glm::ivec2 pictureSize(PictureSize size, glm::ivec2 window);
+
 /// What a person changes in the panel while flying.
 struct ViewSettings {
     EngineOptions engine;  ///< selection, render, earth, exaggeration: what Engine::setOptions takes
@@ -34,6 +45,7 @@ struct ViewSettings {
     bool countSteps = false;
     bool vsync = true;
     double targetFps = 0;  ///< 0: full quality at any rate
+    PictureSize pictureSize = PictureSize::window;
 
     /// Brings engine's sun and statistics in line with the rest.
     void settle();

@@ -81,8 +81,8 @@ NavigationScene Viewer::State::scene() {
 }
 
 std::optional<glm::dvec3> Viewer::State::placeUnder(glm::dvec2 pixel) const {
-    const glm::dvec2 picture(engine.targets().width(), engine.targets().height());
-    const glm::dvec2 texel = glm::floor(glm::clamp(pixel * picture / glm::dvec2(window.size()), -1.0, 1e6));
+    const glm::dvec2 shown(engine.targets().width(), engine.targets().height());
+    const glm::dvec2 texel = glm::floor(glm::clamp(pixel * shown / glm::dvec2(window.size()), -1.0, 1e6));
     return engine.placeAt(static_cast<int>(texel.x), static_cast<int>(texel.y));
 }
 
@@ -114,6 +114,14 @@ void Viewer::State::take(const WindowEvent& event) {
     if (controls.capturesCursor() != captured) window.captureCursor(!captured);
 }
 
+void Viewer::State::takeDuringPicture(const WindowEvent& event) {
+    if (event.kind != WindowEvent::Kind::keyDown) return;
+    if (event.key == letter('Q') && event.control) window.close();
+    if (event.key != Key::escape) return;
+    endPicture();
+    say("the picture was given up");
+}
+
 void Viewer::State::moveCamera(double flown) {
     if (const auto gamepad = window.gamepad()) controls.handle(*gamepad, flown);
     const Motion motion = controls.motion();
@@ -137,7 +145,18 @@ void Viewer::State::moveCamera(double flown) {
 bool Viewer::State::advance(const std::vector<WindowEvent>& events, double seconds, double flown) {
     clock += seconds;
     controls.setWindowHeight(window.size().y);
-    for (const WindowEvent& event : events) take(event);
+    for (const WindowEvent& event : events) {
+        if (picture) {
+            takeDuringPicture(event);
+        } else {
+            take(event);
+        }
+    }
+    if (picture) continuePicture();
+    if (picture) {
+        compose();
+        return true;
+    }
     moveCamera(flown);
     if (!notice.empty() && clock >= noticeUntil) {
         notice.clear();
@@ -202,14 +221,23 @@ void Viewer::State::noteProgress() {
 
 void Viewer::State::compose() {
     gui.begin();
-    declareGui();
+    if (picture) {
+        drawNotice("picture: " + std::to_string(picture->drawn()) + " of " + std::to_string(picture->parts()) +
+                   " parts are drawn (Esc gives it up)");
+    } else {
+        declareGui();
+    }
     gui.end();
     present();
 }
 
 void Viewer::State::present() {
     const glm::ivec2 size = window.size();
-    screen.show(engine.targets(), size.x, size.y);
+    if (picture) {
+        screen.showKept(size.x, size.y);
+    } else {
+        screen.show(engine.targets(), size.x, size.y);
+    }
     gui.draw();
 }
 
@@ -228,7 +256,7 @@ void Viewer::run() {
 bool Viewer::turn(double waitSeconds) {
     State& state = *state_;
     const bool moving = state.moving();
-    const bool busy = moving || state.stale || state.uncomposed > 0;
+    const bool busy = moving || state.stale || state.uncomposed > 0 || state.picture;
     const double untilNotice = state.notice.empty() ? waitSeconds : std::max(state.noticeUntil - state.clock, 0.01);
     const double wait = busy ? 0 : state.paging ? kArrivalWait : std::min(waitSeconds, untilNotice);
     const bool polled = state.window.gamepad().has_value();  // GLFW tells nothing of sticks

@@ -24,6 +24,7 @@ struct ViewerOptions {
     Json remembered;                                 ///< panels of the last run
     std::filesystem::path pictures = ".";            ///< where pictures and flights go
     std::optional<std::filesystem::path> bookmarks;  ///< none: they live as long as the viewer
+    std::optional<glm::ivec2> part;                  ///< of pictures, as in PictureInParts
     double targetFps = 0;                            ///< see Quality
     Window::Options window;
     EngineOptions engine;

@@ -4,15 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <span>
 
 #include "client/engine/dataset_camera.h"
 #include "client/navigation/place_text.h"
-#include "client/output/picture.h"
-#include "client/view/snapshot.h"
 #include "client/view/viewer_state.h"
 #include "common/error.h"
-#include "common/output_file.h"
 
 namespace terray {
 namespace {
@@ -185,34 +181,45 @@ std::filesystem::path Viewer::State::pictureName(const std::string& stem, const 
 }
 
 void Viewer::State::takePicture() {
-    const std::filesystem::path path = pictureName("", ".png");
-    const glm::ivec2 size = window.size();
+    controls.letGo();
+    window.captureCursor(false);
+    screen.keep(engine.targets());
     engine.freezeSelection(false);
     // What the editor draws is none of the picture that its JSON draws again.
     if (marked) engine.setOverlay(options.engine.overlay);
     marked.reset();
-    const auto restore = [&] {
-        engine.setOptions(settings.engine);
-        engine.freezeSelection(frozen);
-        stale = true;
-    };
     try {
-        const Snapshot snapshot = takeSnapshot(engine, navigator.camera(),
-                                               {.source = source,
-                                                .projection = projectionOrNull(),
-                                                .arguments = options.arguments,
-                                                .settings = settings,
-                                                .size = size});
-        writePng(path, snapshot.picture.view());
-        std::filesystem::path beside = path;
-        const std::string text = snapshot.json.dump() + "\n";
-        writeWholeFile(beside.replace_extension(".json"), std::as_bytes(std::span(text)));
+        picture.emplace(engine, navigator.camera(),
+                        SnapshotScene{.source = source,
+                                      .projection = projectionOrNull(),
+                                      .arguments = options.arguments,
+                                      .settings = settings,
+                                      .size = pictureSize(settings.pictureSize, window.size()),
+                                      .part = options.part},
+                        pictureName("", ".png"));
     } catch (...) {
-        restore();
+        endPicture();
         throw;
     }
-    restore();
-    say("picture: " + path.string());
+}
+
+void Viewer::State::continuePicture() {
+    try {
+        picture->drawNext();
+        if (!picture->finished()) return;
+        say("picture: " + picture->path().string());
+    } catch (const Error& error) {
+        say(error.what());
+    }
+    endPicture();
+}
+
+void Viewer::State::endPicture() {
+    picture.reset();
+    screen.forget();
+    engine.setOptions(settings.engine);
+    frozen = false;  // what was selected last is a part of the picture
+    stale = true;
 }
 
 void Viewer::State::startOrSaveRecording() {

@@ -13,6 +13,7 @@
 #include "client/view/gui.h"
 #include "client/view/instruments.h"
 #include "client/view/quality.h"
+#include "client/view/snapshot.h"
 #include "client/view/view_settings.h"
 #include "client/view/viewer.h"
 
@@ -28,6 +29,8 @@ struct Viewer::State {
     /// @param seconds  since the last turn  @param flown  of these, those that the camera flew
     bool advance(const std::vector<WindowEvent>& events, double seconds, double flown);
     void take(const WindowEvent& event);
+    /// While a picture is taken: Esc gives it up.
+    void takeDuringPicture(const WindowEvent& event);
     void moveCamera(double flown);
     /// Whether something is on its way without anybody touching anything.
     [[nodiscard]] bool moving() const;
@@ -49,6 +52,9 @@ struct Viewer::State {
     void goToPlace(const std::string& text);
     void copyCamera();
     void takePicture();
+    /// Draws the next part of the picture that is being taken.
+    void continuePicture();
+    void endPicture();
     void startOrSaveRecording();
     void startOrStopReplay();
     void cancel();
@@ -122,6 +128,7 @@ struct Viewer::State {
     std::optional<FlightRecorder> recorder;
     Flight lastFlight;
     std::optional<double> replayed;  ///< seconds of lastFlight that have been shown
+    std::optional<Snapshot> picture;  ///< being taken; nothing else is drawn meanwhile
     std::optional<FlightEditor> editor;
     EditorPanel editorPanel;
     std::optional<std::filesystem::path> editedFile;  ///< what the editor loaded or saved, and may replace

@@ -17,7 +17,7 @@ void main() {
     float part = quad / (node.boxMax.x - node.boxMin.x);
     fromEye.z += node.boxMax.w * part * part;
 #endif
-    gl_Position = projectedPoint(fromEye);
+    gl_Position = clipPosition(fromEye);
     gl_ClipDistance[0] = texel.x - node.boxMin.x;
     gl_ClipDistance[1] = node.boxMax.x - texel.x;
     gl_ClipDistance[2] = texel.y - node.boxMin.y;

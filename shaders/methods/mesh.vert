@@ -33,7 +33,7 @@ void main() {
     NodeParameters node = nodes[nodeIndex];
     ivec2 cell = sampleOf(gl_VertexID);
     vec2 texel = vec2(cell) + 0.5;
-    gl_Position = projectedPoint(seenPoint(metresFromEye(node, vec3(texel, heightOf(cell, node.source.x)))));
+    gl_Position = clipPosition(seenPoint(metresFromEye(node, vec3(texel, heightOf(cell, node.source.x)))));
     gl_ClipDistance[0] = texel.x - node.boxMin.x;
     gl_ClipDistance[1] = node.boxMax.x - texel.x;
     gl_ClipDistance[2] = texel.y - node.boxMin.y;

@@ -6,5 +6,5 @@ void main() {
     NodeParameters node = nodes[nodeIndex];
     vec3 corner = vec3(gl_VertexID & 1, (gl_VertexID >> 1) & 1, gl_VertexID >> 2);
     vec3 fromEye = metresFromEye(node, mix(node.boxMin.xyz, node.boxMax.xyz, corner));
-    gl_Position = projectedPoint(seenCorner(node, fromEye, corner.z));
+    gl_Position = clipPosition(seenCorner(node, fromEye, corner.z));
 }

@@ -101,6 +101,30 @@ TEST(Png, WritesAWindowOfALargerPicture) {
         for (int x = 0; x < 11; ++x) EXPECT_EQ(back.at(x, y), window.at(x, y));
 }
 
+std::string bytesOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST(Png, RowByRowIsTheSameFileAndHalfOfItIsNone) {
+    const TemporaryDirectory directory;
+    const auto picture = bytePicture();
+    writePng(directory / "whole.png", picture.view());
+    {
+        PngWriter writer(directory / "bands.png", kSize);
+        for (int y = 0; y < kSize.height; y += 4)
+            writer.write(picture.view().window({0, y, kSize.width, std::min<int64_t>(4, kSize.height - y)}));
+        writer.finish();
+    }
+    EXPECT_EQ(bytesOf(directory / "bands.png"), bytesOf(directory / "whole.png"));
+    {
+        PngWriter given(directory / "given-up.png", kSize);
+        given.write(picture.view().window({0, 0, kSize.width, 7}));
+        PngWriter begun(directory / "begun.png", kSize);
+    }
+    EXPECT_EQ(directory.entries(), 2u);
+}
+
 TEST(Exr, EveryChannelComesBackExactly) {
     const TemporaryDirectory directory;
     const MeasuredPicture picture = measuredPicture();

@@ -8,6 +8,8 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include "client/render/gl_context.h"
+#include "client/view/picture_in_parts.h"
 #include "tests/common/temporary_directory.h"
 #include "tests/support/analytic_dataset.h"
 
@@ -40,6 +42,11 @@ class ViewTest : public testing::Test {
         std::vector<std::string> all{dataset(), "--headless", "--size", "96x64", "--out", out(name)};
         all.insert(all.end(), more.begin(), more.end());
         return all;
+    }
+
+    static std::string bytesOf(const std::string& path) {
+        std::ifstream file(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     }
 
     static inline std::unique_ptr<TemporaryDirectory> shared_;
@@ -83,11 +90,45 @@ TEST_F(ViewTest, WritesWhatIsKnownOfEachPixelAsExr) {
 TEST_F(ViewTest, TheSameViewIsTheSameFile) {
     ASSERT_EQ(view(headless("a.png")), ExitCode::ok);
     ASSERT_EQ(view(headless("b.png")), ExitCode::ok);
-    const auto bytes = [&](const std::string& name) {
-        std::ifstream file(out(name), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(file), {});
+    EXPECT_EQ(bytesOf(out("a.png")), bytesOf(out("b.png")));
+}
+
+TEST_F(ViewTest, InPartsIsTheSameFileAsInOnePiece) {
+    const std::vector<std::string> camera{"--camera", "401000,5198000,1500,20,-30,50", "--shadows", "on"};
+    const auto drawn = [&](const std::string& name, const std::string& part) {
+        std::vector<std::string> more = camera;
+        if (!part.empty()) more.insert(more.end(), {"--part-size", part});
+        EXPECT_EQ(view(headless(name, more)), ExitCode::ok);
+        return bytesOf(out(name));
     };
-    EXPECT_EQ(bytes("a.png"), bytes("b.png"));
+    const std::string whole = drawn("whole.png", "");
+    for (const char* part : {"48x32", "32x64", "1000x7", "95x63"})
+        EXPECT_EQ(drawn(part + std::string(".png"), part), whole);
+    EXPECT_EQ(view(headless("a.exr", {"--part-size", "48x32"})), ExitCode::usage);
+    EXPECT_EQ(view(headless("a.png", {"--part-size", "0x32"})), ExitCode::usage);
+}
+
+/// Slots for so few tiles that a part near the eye must give up detail: then all parts do, and twice the same.
+TEST_F(ViewTest, PartsGiveUpDetailTogetherWhereMemoryIsTooSmall) {
+    const AnalyticDataset dataset({.finestLevel = 2, .imageryLevel = 2});
+    const ShaderLibrary shaders;
+    const HeadlessContext context;
+    EngineOptions options;
+    options.selection.tolerance = Pixels(0.1);
+    options.gpuHeightBytes = 6 * GpuTiles::heightUploadBytes() * 3 / 2;
+    const Camera camera{.position = {402000, 5195500, 900}, .pitch = radiansFromDegrees(-9)};
+    std::vector<std::string> files;
+    for (const char* name : {"a.png", "b.png"}) {
+        Engine engine(dataset, shaders, options, 8, 8);
+        PictureInParts picture(engine, camera, out(name), {.size = {200, 150}, .part = glm::ivec2(64, 79)});
+        EXPECT_EQ(picture.parts(), 12);
+        int draws = 0;
+        for (; !picture.finished() && draws < 200; ++draws) picture.drawNext();
+        EXPECT_GT(draws, 12) << "begun again";
+        EXPECT_GT(picture.report().coarsening.heights, 1);
+        files.push_back(bytesOf(out(name)));
+    }
+    EXPECT_EQ(files[0], files[1]);
 }
 
 TEST_F(ViewTest, PutsAPinIntoThePicture) {

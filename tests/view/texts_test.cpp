@@ -94,6 +94,25 @@ TEST(ViewerSettings, AreRememberedWhereTheCommandLineSaysNothing) {
     EXPECT_TRUE(restored.instruments);
 }
 
+TEST(ViewerSettings, PicturesHaveTheWindowsShapeAndAtMost16384PixelsASide) {
+    const glm::ivec2 window(1200, 800);
+    EXPECT_EQ(pictureSize(PictureSize::window, window), window);
+    EXPECT_EQ(pictureSize(PictureSize::twice, window), glm::ivec2(2400, 1600));
+    EXPECT_EQ(pictureSize(PictureSize::fourTimes, window), glm::ivec2(4800, 3200));
+    EXPECT_EQ(pictureSize(PictureSize::wide, window), glm::ivec2(16384, 10923));
+    EXPECT_EQ(pictureSize(PictureSize::fourTimes, {5120, 2880}), glm::ivec2(16384, 9216));
+    EXPECT_EQ(pictureSize(PictureSize::twice, {30000, 1}), glm::ivec2(30000, 1)) << "a window that is larger";
+    EXPECT_EQ(pictureSize(PictureSize::wide, {1, 16384}), glm::ivec2(1, 16384));
+
+    ViewSettings settings, restored;
+    settings.pictureSize = PictureSize::wide;
+    restorePanels(toJson(settings), restored);
+    EXPECT_EQ(restored.pictureSize, PictureSize::wide);
+    restorePanels(Json::parse(R"({"picture_size": 4})").value(), restored);
+    restorePanels(Json::parse(R"({"picture_size": -1})").value(), restored);
+    EXPECT_EQ(restored.pictureSize, PictureSize::wide) << "nonsense is left out";
+}
+
 TEST(ViewerSettings, OfNonsenseNothingIsRemembered) {
     for (const char* text : {"null", "[]", R"({"options": 3})", R"({"options": {"out": "a.png", "tolerance": 3}})"}) {
         const Json json = Json::parse(text).value();

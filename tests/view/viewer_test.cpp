@@ -138,6 +138,38 @@ TEST_F(ViewerTest, TakesAPictureThatItsJsonDrawsAgain) {
     EXPECT_EQ(readPicture(larger).width(), 400);
 }
 
+TEST_F(ViewerTest, TakesALargePictureInPartsThatIsTheOneOfOnePiece) {
+    const test::TemporaryDirectory dataset;
+    dataset_.write(dataset.path());
+    ViewerOptions options;
+    options.arguments = {dataset.path().string(), "--part-size", "300x130"};
+    options.part = glm::ivec2(300, 130);
+    options.remembered = Json::parse(R"({"picture_size": 1})").value();
+    {
+        const auto viewer = open(options);
+        bare(*viewer);
+        settle(*viewer);
+        const Picture before = viewer->screenshot();
+        type(*viewer, letter('P'));  // 640 x 480: 3 x 4 parts
+        EXPECT_EQ(viewer->notice(), "");
+        EXPECT_GT(differing(viewer->screenshot(), before), 0) << "it says how far it is";
+        EXPECT_LT(differing(viewer->screenshot(), before), 0.3) << "over what was there";
+        type(*viewer, Key::escape);
+        EXPECT_EQ(viewer->notice(), "the picture was given up");
+        EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+        type(*viewer, letter('P'));
+        for (int n = 0; n < 20; ++n) viewer->turnFor(0.02);
+        EXPECT_NE(viewer->notice().find(".png"), std::string::npos) << viewer->notice();
+        settle(*viewer);
+        EXPECT_LT(differing(viewer->screenshot(), before), 0.3) << "the window is as it was, but for the notice";
+    }
+    const Picture taken = readPicture(written(".png"));
+    EXPECT_EQ(taken.size(), (GridSize{640, 480}));
+    const std::string again = (dataset / "again.png").string();
+    ASSERT_EQ(runView({"--reproduce", written(".json").string(), "--out", again}), ExitCode::ok);
+    EXPECT_TRUE(readPicture(again) == taken) << "byte by byte";
+}
+
 TEST_F(ViewerTest, RecordsWhatWasFlownAndReplaysIt) {
     const auto viewer = open();
     settle(*viewer);
