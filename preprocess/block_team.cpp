@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "common/error.h"
 #include "common/parallel.h"
@@ -28,8 +29,12 @@ enum class Request : uint32_t {
 constexpr auto kBriefly = std::chrono::microseconds(200);
 /// While others do work of minutes.
 constexpr auto kLonger = std::chrono::milliseconds(5);
-/// Part of the spill that a process takes at a time.
-constexpr uint64_t kSpillShare = uint64_t{16} << 20;
+/// Units of the spill that a process takes at a time.
+constexpr uint64_t kShareUnits = 8;
+
+uint64_t wholeUnits(uint64_t bytes) {
+    return (bytes + SpillShare::kUnit - 1) / SpillShare::kUnit * SpillShare::kUnit;
+}
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstringop-overflow"  // GCC 12: false alarm at the first growth of an array
@@ -164,6 +169,16 @@ class Service {
 
 }  // namespace
 
+uint64_t SpillShare::take(uint64_t bytes, const std::function<uint64_t(uint64_t)>& more) {
+    if (bytes > left_) {
+        const uint64_t share = std::max(wholeUnits(bytes), kShareUnits * kUnit);
+        place_ = more(share);
+        left_ = share;
+    }
+    left_ -= bytes;
+    return std::exchange(place_, place_ + bytes);
+}
+
 void TeamLeader::begin(const TeamOrders& orders, const std::atomic<bool>& stop) {
     if (ranks_ == nullptr) return;
     Service service(*ranks_);
@@ -179,6 +194,8 @@ void TeamLeader::begin(const TeamOrders& orders, const std::atomic<bool>& stop) 
 
 void TeamLeader::runStage(const TeamStage& stage) {
     spillEnd_ = &stage.spillEnd;
+    share_.forget();
+    if (ranks_ != nullptr) stage.spillEnd = wholeUnits(stage.spillEnd);
     if (stage.begin && !stage.blocks.empty()) stage.begin();
     Handout handout(stage.blocks);
     std::exception_ptr elsewhere;
@@ -232,7 +249,9 @@ void TeamLeader::part(BuildTimes& times, const std::atomic<bool>& stop) {
 }
 
 uint64_t TeamLeader::reserve(uint64_t bytes) {
-    return spillEnd_->fetch_add(bytes);
+    if (ranks_ == nullptr) return spillEnd_->fetch_add(bytes);
+    const std::scoped_lock lock(mutex_);
+    return share_.take(bytes, [&](uint64_t share) { return spillEnd_->fetch_add(share); });
 }
 
 TeamOrders TeamMember::begin(const std::atomic<bool>& stop) {
@@ -251,7 +270,7 @@ TeamOrders TeamMember::begin(const std::atomic<bool>& stop) {
 
 void TeamMember::runStage(const TeamStage& stage) {
     stop_ = &stage.stop;
-    spillLeft_ = 0;
+    share_.forget();
     const Bytes opened = askAlone(requestOf(Request::open).bytes(), stage.stop);
     ByteReader in(opened);
     in.read<uint32_t>();
@@ -281,18 +300,14 @@ void TeamMember::meet(const std::atomic<bool>& stop) {
 
 uint64_t TeamMember::reserve(uint64_t bytes) {
     const std::scoped_lock lock(mutex_);
-    if (bytes > spillLeft_) {
-        spillLeft_ = std::max(bytes, kSpillShare);
+    return share_.take(bytes, [&](uint64_t share) {
         ByteWriter request = requestOf(Request::reserve);
-        request.write(spillLeft_);
+        request.write(share);
         const Bytes answer = ask(request.bytes(), *stop_);
         ByteReader in(answer);
         in.read<uint32_t>();
-        spillPlace_ = in.read<uint64_t>();
-    }
-    spillLeft_ -= bytes;
-    spillPlace_ += bytes;
-    return spillPlace_ - bytes;
+        return in.read<uint64_t>();
+    });
 }
 
 void TeamMember::part(const BuildTimes& times, const std::atomic<bool>& stop) {

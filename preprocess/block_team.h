@@ -65,6 +65,24 @@ class BlockTeam {
     [[nodiscard]] virtual uint64_t reserve(uint64_t bytes) = 0;
 };
 
+/// The part of a spill that one process writes to when several do: whole units, so that no two machines ever write to
+/// one page. A network file system's client reads a page, changes its own part of it and writes all of it back.
+class SpillShare {
+  public:
+    /// Greater than any system's pages and blocks.
+    static constexpr uint64_t kUnit = uint64_t{2} << 20;
+
+    /// @param more  takes whole units from what all share; returns where they begin
+    /// @return      a place for `bytes`. Not thread-safe
+    [[nodiscard]] uint64_t take(uint64_t bytes, const std::function<uint64_t(uint64_t bytes)>& more);
+    /// Leaves the rest: another spill begins.
+    void forget() { left_ = 0; }
+
+  private:
+    uint64_t place_ = 0;
+    uint64_t left_ = 0;
+};
+
 /// The team as its leader sees it.
 class TeamLeader final : public BlockTeam {
   public:
@@ -83,7 +101,9 @@ class TeamLeader final : public BlockTeam {
 
   private:
     Ranks* ranks_;
-    std::atomic<uint64_t>* spillEnd_ = nullptr;  ///< of the running stage
+    std::atomic<uint64_t>* spillEnd_ = nullptr;  ///< of the running stage; when there are others, at a unit's end
+    std::mutex mutex_;
+    SpillShare share_;  ///< when there are others; under mutex_
 };
 
 /// The team as all others see it.
@@ -112,8 +132,7 @@ class TeamMember final : public BlockTeam {
     Ranks& ranks_;
     std::mutex mutex_;  ///< one request at a time; guards what follows
     const std::atomic<bool>* stop_ = nullptr;
-    uint64_t spillPlace_ = 0;
-    uint64_t spillLeft_ = 0;
+    SpillShare share_;
 };
 
 }  // namespace terray

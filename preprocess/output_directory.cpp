@@ -127,6 +127,19 @@ void emptyPartial(const fs::path& partial) {
     fs::remove(partial / kJournalName);
 }
 
+/// Removes an OUT.partial that nobody will go on with. What cannot be removed, since another process of the build still
+/// has it open on a network's disk, keeps the lock beside it, by which the next run knows whose it is.
+void removeUnused(const fs::path& partial) noexcept {
+    try {
+        emptyPartial(partial);
+        fs::remove(partial / kLockName);
+        std::error_code stillUsed;
+        if (!fs::remove(partial, stillUsed)) std::ofstream(partial / kLockName);
+    } catch (const fs::filesystem_error&) {
+        // It stays, with its lock.
+    }
+}
+
 }  // namespace
 
 void OutputDirectory::check(const fs::path& out, const OutputPermissions& permissions) {
@@ -161,8 +174,7 @@ OutputDirectory::OutputDirectory(const fs::path& out, const OutputPermissions& p
 }
 
 OutputDirectory::~OutputDirectory() {
-    std::error_code ignored;
-    if (!partial_.empty() && !kept_) fs::remove_all(partial_, ignored);
+    if (!partial_.empty() && !kept_) removeUnused(partial_);
     if (lock_ >= 0) ::close(lock_);
 }
 

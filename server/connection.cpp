@@ -124,7 +124,9 @@ Awaitable<bool> Connection::answer(const Head& head) {
         const StoredTile stored{slice->archive, *slice->tile, slice->range};
         tile = worker_.shared().tiles->find(stored);
         if (!tile) tile = co_await fetch(stored);
-        if (!tile) response = refusal(500, "the tile cannot be read; the server's operator should verify the dataset");
+        if (!tile)
+            response = refusal(
+                500, "the tile cannot be read, or memory is short; the server's operator should verify the dataset");
     }
     const bool keepAlive = !response.closes && !worker_.isStopping();
     const HeadContext context = {

@@ -18,7 +18,7 @@
 
 namespace terray::server {
 
-/// The bytes of a stored tile in memory; null: they cannot be read.
+/// The bytes of a stored tile in memory; null: they cannot be read, or there is no memory for them.
 using TileBytes = std::shared_ptr<const KeptTile>;
 
 /// A tile of an archive, found already.

@@ -34,7 +34,7 @@ std::string currentGraphics() {
     return text;
 }
 
-/// None when other graphics have written it.
+/// None when other graphics or an earlier version of this program have written it.
 std::optional<DrawCosts> read(const std::filesystem::path& file, const std::string& graphics) {
     const auto refuse = [&](const std::string& why) {
         return Error(ExitCode::input, "cannot read what drawing costs from " + file.string() + ": " + why +
@@ -48,8 +48,9 @@ std::optional<DrawCosts> read(const std::filesystem::path& file, const std::stri
     if (!json) throw refuse(json.failure().message);
     const auto format = json->stringAt("format");
     const auto version = json->numberAt("version");
-    if (!format || *format != kFormat || !version || *version != kVersion)
+    if (!format || *format != kFormat || !version || *version > kVersion)
         throw refuse(std::string("expected \"format\": \"") + kFormat + "\", \"version\": " + std::to_string(kVersion));
+    if (*version < kVersion) return std::nullopt;
     const auto made = json->stringAt("graphics");
     if (!made || *made != graphics) return std::nullopt;
     DrawCosts costs;

@@ -117,22 +117,23 @@ std::vector<uint8_t> HybridChoice::choose(std::span<const DrawNode> nodes, std::
     TERRAY_CHECK_OP(nodes.size(), ==, work.size());
     std::vector<uint8_t> choice(nodes.size());
     std::unordered_map<TileId, bool> chosen;
-    std::unordered_map<TileId, double> missed;
     for (size_t n = 0; n < nodes.size(); ++n) {
         const double cast = costs.castMs(work[n]), mesh = costs.meshMs(work[n]);
         const auto found = rasterised_.find(nodes[n].cell);
         const bool before = found != rasterised_.end() && found->second;
         bool rasterised = before ? !(cast < kWorthAChange * mesh) : mesh < kWorthAChange * cast;
         if (!work[n].isMade) {
-            double& sum = missed.try_emplace(nodes[n].heightTile, missed_[nodes[n].heightTile]).first->second;
+            double& sum = missed_[nodes[n].heightTile];
             if (rasterised) sum += cast - mesh;
             rasterised = rasterised && sum >= costs.meshMake;
+        } else {
+            missed_.erase(nodes[n].heightTile);
         }
         choice[n] = rasterised ? 1 : 0;
         chosen.emplace(nodes[n].cell, rasterised);
     }
     rasterised_ = std::move(chosen);
-    missed_ = std::move(missed);
+    if (missed_.size() > kMostMissed) missed_.clear();
     return choice;
 }
 

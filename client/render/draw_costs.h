@@ -60,7 +60,8 @@ struct CostSample {
 /// Chooses for each node of a frame whether it is rasterised. A cell begins with rays, and keeps its way until the
 /// other one is told to take less than 0.8 of its time, so that nodes do not flip. A tile is triangulated once its
 /// triangles, had they been there, would have saved as much time as making them takes: whether it is drawn for a frame
-/// or for minutes, that costs at most twice of what the better way would have (as with skis, to rent or to buy).
+/// or for minutes, at once or now and again, that costs at most twice of what the better way would have (as with skis,
+/// to rent or to buy), as far as times are as they were told.
 class HybridChoice {
   public:
     /// @return  of each node, 1: rasterised. Cells that are not among the nodes are forgotten.
@@ -69,6 +70,7 @@ class HybridChoice {
 
   private:
     static constexpr double kWorthAChange = 0.8;
+    static constexpr size_t kMostMissed = 65536;   ///< tiles that are remembered; all are forgotten beyond that
     std::unordered_map<TileId, bool> rasterised_;  ///< by cell, of the last frame
     std::unordered_map<TileId, double> missed_;  ///< by height tile not made: ms that triangles would have saved so far
 };

@@ -52,7 +52,7 @@ void FlightEditor::advance(double seconds) {
 }
 
 void FlightEditor::commit(Flight edited, std::optional<size_t> selected) {
-    before_.push_back({std::exchange(flight_, std::move(edited)), selected_});
+    before_.push_back({std::exchange(flight_, std::move(edited)), selected_, origin_});
     undone_.clear();
     size_t keys = 0;
     for (const Step& step : before_) keys += step.flight.keys.size();
@@ -70,7 +70,7 @@ void FlightEditor::restore(std::vector<Step>& from, std::vector<Step>& to) {
     if (from.empty()) return;
     Step step = std::move(from.back());
     from.pop_back();
-    to.push_back({std::exchange(flight_, std::move(step.flight)), selected_});
+    to.push_back({std::exchange(flight_, std::move(step.flight)), selected_, std::exchange(origin_, step.origin)});
     selected_ = step.selected;
     changed_ = true;
     scrub(seconds_);
@@ -159,6 +159,7 @@ Result<void> FlightEditor::thin(Metres place, Radians angle) {
 
 void FlightEditor::replace(Flight flight) {
     commit(std::move(flight), std::nullopt);
+    origin_ = ++origins_;
 }
 
 }  // namespace terray

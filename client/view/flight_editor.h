@@ -20,7 +20,8 @@ class FlightEditor {
     /// Flights that can be gone back to hold at most so many keys together (64 MB); the last one always stays.
     static constexpr size_t kMostKeptKeys = size_t{1} << 20;
 
-    explicit FlightEditor(Flight flight) : flight_(std::move(flight)) {}
+    /// @param changed  whether the flight is not as any file has it
+    explicit FlightEditor(Flight flight, bool changed = false) : flight_(std::move(flight)), changed_(changed) {}
 
     [[nodiscard]] const Flight& flight() const { return flight_; }
     /// Index of a key; none where there is no key, or where none was chosen.
@@ -30,6 +31,9 @@ class FlightEditor {
     /// Whether there is something that saved() was not told of.
     [[nodiscard]] bool changed() const { return changed_; }
     void saved() { changed_ = false; }
+    /// Which flight this one has come from: another after replace(), the one before after undo(). So a file that was
+    /// loaded is known not to be this flight's.
+    [[nodiscard]] uint64_t origin() const { return origin_; }
 
     /// Chooses a key and looks at its moment. @param key  an index of the flight's
     void select(size_t key);
@@ -77,6 +81,7 @@ class FlightEditor {
     struct Step {
         Flight flight;
         std::optional<size_t> selected;
+        uint64_t origin = 0;
     };
     /// Takes an edited flight over. @param selected  of it
     void commit(Flight edited, std::optional<size_t> selected);
@@ -89,8 +94,10 @@ class FlightEditor {
     std::optional<size_t> selected_;
     double seconds_ = 0;
     bool playing_ = false;
-    bool changed_ = false;
+    bool changed_;
     uint64_t revision_ = 0;
+    uint64_t origin_ = 0;
+    uint64_t origins_ = 0;  ///< that there have been
     std::vector<Step> before_;
     std::vector<Step> undone_;
 };

@@ -37,13 +37,22 @@ std::vector<glm::dvec3> lookOf(const Flight& flight, size_t key) {
     return {camera.position, camera.position + length * viewOf(camera, 1, 1).forward};
 }
 
+/// Points between keys where these are few, a part of the keys where they are many.
+std::vector<glm::dvec3> drawnPath(const Flight& flight) {
+    const size_t keys = flight.keys.size();
+    if (keys <= kMostPoints) return pathPoints(flight, std::min(kBetween, kMostPoints / keys - 1));
+    std::vector<glm::dvec3> points;
+    for (size_t n = 0; n < kMostPoints; ++n)
+        points.push_back(flight.keys[n * (keys - 1) / (kMostPoints - 1)].camera.position);
+    return points;
+}
+
 }  // namespace
 
 std::vector<OverlayMesh> flightMarks(const Flight& flight, std::optional<size_t> selected) {
     std::vector<OverlayMesh> marks;
     if (flight.keys.empty()) return marks;
-    marks.push_back(
-        tubes({pathPoints(flight, std::min(kBetween, kMostPoints / flight.keys.size()))}, kPathPixels, kPathColour));
+    marks.push_back(tubes({drawnPath(flight)}, kPathPixels, kPathColour));
     std::vector<std::vector<glm::dvec3>> balls;
     for (size_t key = 0; key < flight.keys.size() && flight.keys.size() <= kMostBalls; ++key)
         if (key != selected) balls.push_back({flight.keys[key].camera.position});

@@ -234,7 +234,12 @@ void Viewer::State::startOrSaveRecording() {
     lastFlight = recorder->flight(options.datasetName, "recorded " + stamp());
     recorder.reset();
     saveFlight(lastFlight, path, projectionOrNull());
-    if (editor) editor->replace(lastFlight);
+    lastFlightChanged = false;
+    if (editor) {
+        editor->replace(lastFlight);
+        editor->saved();
+        keepEditedFile(path);
+    }
     say("flight of " + numberText(std::round(10 * lastFlight.seconds()) / 10) + " s: " + path.string());
 }
 

@@ -13,12 +13,13 @@ namespace terray {
 void Viewer::State::openOrCloseEditor() {
     if (editor) {
         if (!editor->flight().keys.empty()) lastFlight = editor->flight();
+        lastFlightChanged = editor->changed();
         editor.reset();
         stale = true;
         return;
     }
     replayed.reset();
-    editor.emplace(lastFlight);
+    editor.emplace(lastFlight, lastFlightChanged);
     editedFile.reset();
     editorPanel.file = pictureName("flight-", ".json").string();
     editorPanel.projection = projectionOrNull();
@@ -66,16 +67,24 @@ void Viewer::State::saveEdited() {
     if (editor->flight().keys.empty()) return say("the flight has no key yet: add one first");
     if (path.empty()) return say("the flight was not saved: its file has no name");
     // What was recorded stays, unless it is what the person works on.
-    if (path != editedFile && std::filesystem::exists(path))
+    const bool isOwn = path == editedFile && editedOrigin == editor->origin();
+    std::error_code unknown;
+    if (!isOwn && std::filesystem::exists(path, unknown))
         return say("the flight was not saved: " + path.string() + " exists; give another name, or load it first");
     Flight flight = editor->flight();
     flight.dataset = options.datasetName;
     if (flight.name.empty()) flight.name = path.stem().string();
     exportFlight(flight, path, projectionOrNull());
-    editedFile = path;
+    keepEditedFile(path);
     editor->saved();
     lastFlight = std::move(flight);
     say("flight of " + std::to_string(lastFlight.keys.size()) + " keys: " + path.string());
+}
+
+void Viewer::State::keepEditedFile(const std::filesystem::path& path) {
+    editedFile = path;
+    editedOrigin = editor->origin();
+    editorPanel.file = path.string();
 }
 
 void Viewer::State::loadToEdit() {
@@ -86,8 +95,11 @@ void Viewer::State::loadToEdit() {
     editor->select(0);
     // Another program's file stays what it is.
     const bool ours = path.extension() == ".json";
-    editedFile = ours ? std::optional(path) : std::nullopt;
-    if (!ours) editorPanel.file = pictureName("flight-", ".json").string();
+    editedFile.reset();
+    if (ours)
+        keepEditedFile(path);
+    else
+        editorPanel.file = pictureName("flight-", ".json").string();
     lookAtMoment();
 }
 

@@ -62,6 +62,7 @@ struct Viewer::State {
     void edit(Command command);
     void openOrCloseEditor();
     void saveEdited();
+    void keepEditedFile(const std::filesystem::path& path);
     void loadToEdit();
     /// Puts the camera to where the edited flight is at its moment.
     void lookAtMoment();
@@ -127,11 +128,13 @@ struct Viewer::State {
     std::unique_ptr<GroundTiles> tapeGround;
     std::optional<FlightRecorder> recorder;
     Flight lastFlight;
-    std::optional<double> replayed;  ///< seconds of lastFlight that have been shown
+    std::optional<double> replayed;   ///< seconds of lastFlight that have been shown
     std::optional<Snapshot> picture;  ///< being taken; nothing else is drawn meanwhile
     std::optional<FlightEditor> editor;
     EditorPanel editorPanel;
     std::optional<std::filesystem::path> editedFile;  ///< what the editor loaded or saved, and may replace
+    uint64_t editedOrigin = 0;                        ///< FlightEditor::origin() of the flight in that file
+    bool lastFlightChanged = false;                   ///< in the editor, and not saved since
     std::optional<uint64_t> marked;                   ///< revision of the flight whose marks are in the picture
 };
 

@@ -38,6 +38,11 @@ TEST_F(DrawCostsFile, IsWrittenOnceAndReadFromThenOn) {
     changed.set("mesh_node_ms", 0.125);
     write(changed.dump());
     EXPECT_EQ(settledDrawCosts(file_, shaders_).meshNode, 0.125);
+    changed.set("version", 1);
+    write(changed.dump());
+    EXPECT_NE(settledDrawCosts(file_, shaders_).meshNode, 0.125) << "of a version that had fewer costs";
+    changed = content();
+    changed.set("mesh_node_ms", 0.125);
     changed.set("graphics", "another card");
     write(changed.dump());
     EXPECT_NE(settledDrawCosts(file_, shaders_).meshNode, 0.125);

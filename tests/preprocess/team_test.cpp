@@ -1,7 +1,9 @@
 // Datasets that several processes build together. The processes are threads here, with a post office between them that
 // is as slow to deliver as it likes; tests/preprocess/mpi_test.cpp runs true ones.
 
+#include <array>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -125,6 +127,23 @@ TEST_F(Team, BuildsTheSameBytesForAnyCountOfProcesses) {
         expectSame("alone", "together");
         std::filesystem::remove_all(directory_ / "together");
     }
+}
+
+TEST(SpillShare, OfTwoProcessesNeverMeetInAUnit) {
+    std::atomic<uint64_t> end = 0;
+    const auto more = [&](uint64_t bytes) { return end.fetch_add(bytes); };
+    std::array<SpillShare, 2> shares;
+    std::map<uint64_t, size_t> owners;  // of units
+    uint64_t written = 0;
+    for (uint64_t n = 0; n < 2000; ++n) {
+        const uint64_t bytes = n % 97 == 0 ? 40'000'000 : 1 + n * 7919 % 300'000;
+        const size_t process = n * 13 % 7 % 2;
+        const uint64_t place = shares.at(process).take(bytes, more);
+        for (uint64_t unit = place / SpillShare::kUnit; unit <= (place + bytes - 1) / SpillShare::kUnit; ++unit)
+            EXPECT_EQ(owners.try_emplace(unit, process).first->second, process) << n;
+        written += bytes;
+    }
+    EXPECT_LT(end, 2 * written);
 }
 
 TEST_F(Team, ReallySharesTheBlocks) {

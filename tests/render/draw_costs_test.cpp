@@ -115,14 +115,16 @@ TEST(HybridChoice, MakesATilesTrianglesOnceTheyWouldHaveSavedTheirOwnTime) {
     EXPECT_EQ(choice.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1})) << "after 3 x 30 and 20 ms";
     for (NodeWork& node : work) node.isMade = true;
     EXPECT_EQ(choice.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1}));
-    // A tile that is there costs nothing to begin with; one that was not drawn for a frame begins anew.
+    // A tile that is there costs nothing to begin with; one that is out of sight for a while is not forgotten.
     HybridChoice other;
     EXPECT_EQ(other.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1}));
     for (NodeWork& node : work) node.isMade = false;
-    HybridChoice forgetful;
-    for (int frame = 0; frame < 3; ++frame) (void)forgetful.choose(nodes, work, costs);
-    (void)forgetful.choose({}, {}, costs);
-    EXPECT_EQ(forgetful.choose(nodes, work, costs), (std::vector<uint8_t>{0, 0}));
+    HybridChoice interrupted;
+    for (int frame = 0; frame < 3; ++frame) {
+        EXPECT_EQ(interrupted.choose(nodes, work, costs), (std::vector<uint8_t>{0, 0})) << frame;
+        (void)interrupted.choose({}, {}, costs);
+    }
+    EXPECT_EQ(interrupted.choose(nodes, work, costs), (std::vector<uint8_t>{1, 1}));
 }
 
 }  // namespace

@@ -89,6 +89,24 @@ TEST(FlightEditor, UndoesEveryEditAndDoesItAgain) {
     EXPECT_FALSE(editor.canRedo()) << "another way was taken";
 }
 
+TEST(FlightEditor, KnowsWhichFlightItHasComeFrom) {
+    FlightEditor editor = withKeys(2);
+    const uint64_t first = editor.origin();
+    ASSERT_TRUE(editor.append(at(3)));
+    EXPECT_EQ(editor.origin(), first) << "an edit makes it no other flight";
+    editor.replace({.dataset = "", .name = "other", .keys = {{1, at(1)}}});
+    const uint64_t second = editor.origin();
+    EXPECT_NE(second, first);
+    editor.undo();
+    EXPECT_EQ(editor.origin(), first) << "a file of the other flight must not be written over with this one";
+    editor.redo();
+    EXPECT_EQ(editor.origin(), second);
+    editor.undo();
+    editor.replace({.dataset = "", .name = "third", .keys = {{1, at(1)}}});
+    EXPECT_NE(editor.origin(), first);
+    EXPECT_NE(editor.origin(), second);
+}
+
 TEST(FlightEditor, RefusesWithASentenceAndChangesNothing) {
     FlightEditor empty({});
     EXPECT_EQ(empty.move(at(0)).failure().message, "the flight has no key yet: add one first");
