@@ -51,6 +51,10 @@ class PlotErrorsTest(unittest.TestCase):
             self.assertIn("exact", out.with_suffix(".svg").read_text(encoding="utf-8"))
             self.assertEqual(out.with_suffix(".png").read_bytes()[:4], b"\x89PNG")
 
+    def test_a_narrow_axis_has_numbers_too(self):
+        self.assertEqual(load().tics("x", [17.5, 39]), "set xtics (10, 15, 20, 30, 40, 50, 60)")
+        self.assertEqual(load().tics("x", [1, 300]), "set xtics autofreq")
+
     def test_an_unknown_column_is_refused_by_name(self):
         with tempfile.TemporaryDirectory() as folder:
             run = write_run(folder, "run", ['"auto","auto",10,9,11,0.5,0.1'])
