@@ -53,12 +53,12 @@ struct HeightRecord {
 struct HeightTile {
     TileId id;
     HeightEncoding encoding;
-    /// The tile's own record. error, in metres, bounds how far the surfaces of the decoded heights lie from those of the
-    /// finest source samples, straight up or down, at every place of the core where both have one: columns from columns
-    /// exactly (the greatest distance between a core cell and any sample beneath it), bilinear from bilinear by a
-    /// proven bound (preprocess/surface_deviation.h). So it contains quantisation. Where ground ends or has holes, and
-    /// between columns and a bilinear surface, it says nothing. DatasetMetadata::errorsHoldEverywhere false: at samples
-    /// only, the first of the two.
+    /// The tile's own record. error, in metres, bounds how far the surfaces of the decoded heights lie from those of
+    /// the finest source samples, straight up or down, at every place of the core where both have one: columns from
+    /// columns exactly (the greatest distance between a core cell and any sample beneath it), bilinear from bilinear by
+    /// a proven bound (preprocess/surface_deviation.h). So it contains quantisation. Where ground ends or has holes,
+    /// and between columns and a bilinear surface, it says nothing. DatasetMetadata::errorsHoldEverywhere false: at
+    /// samples only, the first of the two.
     HeightRecord record;
     /// The four tiles beneath, by quadrant; all absent at the finest level.
     std::array<HeightRecord, 4> children;

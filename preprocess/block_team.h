@@ -59,7 +59,7 @@ class BlockTeam {
     /// Builds all blocks of a stage, and returns when all are kept. Throws what build() threw, here or elsewhere
     /// (the leader: with the name of the process), and Error(interrupted).
     virtual void runStage(const TeamStage& stage) = 0;
-    /// Waits until all have come to this point.
+    /// Waits until all have come to this point. Throws as runStage(). The thread of the build alone.
     virtual void meet(const std::atomic<bool>& stop) = 0;
     /// A place in the running stage's spill for `bytes` that nobody else writes to. Any thread.
     [[nodiscard]] virtual uint64_t reserve(uint64_t bytes) = 0;
@@ -89,7 +89,7 @@ class TeamLeader final : public BlockTeam {
     /// @param ranks  the others, who must outlive this; nullptr: there are none
     explicit TeamLeader(Ranks* ranks) : ranks_(ranks) {}
 
-    /// Tells the others what to do, once all of them are there.
+    /// Tells the others what to do, once all of them are there. Throws what one of them failed of, Error(interrupted).
     void begin(const TeamOrders& orders, const std::atomic<bool>& stop);
     [[nodiscard]] bool leads() const override { return true; }
     [[nodiscard]] int processes() const override { return ranks_ == nullptr ? 1 : ranks_->count(); }
@@ -111,7 +111,7 @@ class TeamMember final : public BlockTeam {
   public:
     explicit TeamMember(Ranks& ranks) : ranks_(ranks) {}
 
-    /// Waits for the leader's orders.
+    /// Waits for the leader's orders. Throws Error(interrupted).
     [[nodiscard]] TeamOrders begin(const std::atomic<bool>& stop);
     [[nodiscard]] bool leads() const override { return false; }
     [[nodiscard]] int processes() const override { return ranks_.count(); }

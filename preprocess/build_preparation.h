@@ -21,6 +21,7 @@ struct BuildPreparation {
 
     /// The photo's pyramid; none without photo.
     [[nodiscard]] std::optional<PyramidExtent> imagery() const;
+    /// The plan of a build that begins. Throws Error(usage) for too little memory.
     [[nodiscard]] WorkPlan plan(const HeightSource& heights, const BuildRequest& request) const;
     /// The plan of a build whose blocks were chosen by whoever began it.
     [[nodiscard]] WorkPlan planAsBegun(const BuildHeading& begun, const BuildRequest& request) const;

@@ -24,8 +24,8 @@ struct ServerOptions {
     int logDescriptor = 1;
 };
 
-/// Serves datasets over HTTP/1.1 on threads of its own. The program has to ignore SIGPIPE: sendfile and splice raise it when a
-/// client has gone.
+/// Serves datasets over HTTP/1.1 on threads of its own. The program has to ignore SIGPIPE: sendfile and splice raise it
+/// when a client has gone.
 ///
 /// With all connections taken, a new one takes the place of the one that has been idle longest; only if none is idle is
 /// it answered 503. See README.md in this folder for what memory that takes.

@@ -41,14 +41,10 @@ void readPattern(ByteView pattern) {
 }  // namespace
 
 bool readHeightTile(ByteView bytes) {
-    if (bytes.empty()) return false;
-    if (!beginsWith(bytes, "TRYH")) {
-        readPattern(bytes);
-        return true;
-    }
-    const bool isWhole = readPayload(bytes);
-    const auto sealed = sealedPayload(bytes, kFieldBytes);
-    return isWhole || (sealed && readPayload(*sealed));
+    return readTile(bytes, {.magic = "TRYH",
+                            .fieldBytes = kFieldBytes,
+                            .readPayload = readPayload,
+                            .readPattern = readPattern});
 }
 
 }  // namespace terray::fuzz

@@ -44,14 +44,10 @@ void readPattern(ByteView pattern) {
 }  // namespace
 
 bool readImageryTile(ByteView bytes) {
-    if (bytes.empty()) return false;
-    if (!beginsWith(bytes, "TRYI")) {
-        readPattern(bytes);
-        return true;
-    }
-    const bool isWhole = readPayload(bytes);
-    const auto sealed = sealedPayload(bytes, kFieldBytes);
-    return isWhole || (sealed && readPayload(*sealed));
+    return readTile(bytes, {.magic = "TRYI",
+                            .fieldBytes = kFieldBytes,
+                            .readPayload = readPayload,
+                            .readPattern = readPattern});
 }
 
 }  // namespace terray::fuzz

@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace terray::fuzz {
+namespace {
+
+bool beginsWith(ByteView bytes, std::string_view text) {
+    return bytes.size() >= text.size() && std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)));
+}
+
+}  // namespace
 
 std::optional<Bytes> sealedPayload(ByteView payload, size_t fieldBytes) {
     const size_t unsealed = kPayloadPrefixBytes + fieldBytes;
@@ -21,8 +28,15 @@ Bytes repeated(ByteView pattern, size_t count) {
     return bytes;
 }
 
-bool beginsWith(ByteView bytes, std::string_view text) {
-    return bytes.size() >= text.size() && std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)));
+bool readTile(ByteView bytes, const TileReading& reading) {
+    if (bytes.empty()) return false;
+    if (!beginsWith(bytes, reading.magic)) {
+        reading.readPattern(bytes);
+        return true;
+    }
+    const bool isWhole = reading.readPayload(bytes);
+    const auto sealed = sealedPayload(bytes, reading.fieldBytes);
+    return isWhole || (sealed && reading.readPayload(*sealed));
 }
 
 }  // namespace terray::fuzz
